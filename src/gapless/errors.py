@@ -1,0 +1,34 @@
+"""Everything gapless raises on purpose: one line that says what, where and what next."""
+
+from __future__ import annotations
+
+
+class GaplessError(Exception):
+    """Base of every error that a user can mend; the command line prints it as one line."""
+
+
+class RecordingError(GaplessError):
+    """A recording or a log cannot be read as it stands."""
+
+
+class ConfigError(GaplessError):
+    """A configuration key is unknown or a value is out of range."""
+
+
+class AlignmentError(GaplessError):
+    """The data never allowed an initial position, velocity or attitude."""
+
+
+class MissingExtraError(GaplessError):
+    """An optional dependency is not installed.
+
+    Parameters
+    ----------
+    package : str
+        The distribution that is missing.
+    extra : str
+        The extra of gapless that brings it.
+    """
+
+    def __init__(self, package: str, extra: str) -> None:
+        super().__init__(f"{package} is not installed; run: pip install 'gapless[{extra}]'")
