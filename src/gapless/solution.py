@@ -1,0 +1,119 @@
+"""What a navigator found: the trajectory, the states beside it, and the evidence for both."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gapless.recording import Array, Columns, Note, Trajectory
+
+
+@dataclass(frozen=True)
+class Decision:
+    """One thing that fusion settled before or while it ran.
+
+    Parameters
+    ----------
+    name : str
+        For instance "clock offset, position".
+    value : float, tuple of float or str
+        In the unit given.
+    unit : str
+        "" where there is none.
+    source : str
+        "data", "recording", "user" or "default".
+    evidence : str
+        One clause: what in the data says so, with figures.
+    sd : float, optional
+        One standard deviation of a value found in the data.
+    """
+
+    name: str
+    value: float | tuple[float, ...] | str
+    unit: str
+    source: str
+    evidence: str
+    sd: float | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Innovations(Columns):
+    """What one kind of observation said against the prediction.
+
+    Parameters
+    ----------
+    time : ndarray, shape (k,)
+        Time the observation holds for, IMU clock [s].
+    z : ndarray, shape (k, d)
+        Observed minus predicted, SI units.
+    sd : ndarray, shape (k, d)
+        Predicted standard deviation of z, from S = H P H' + R before any adaptation.
+    nis : ndarray, shape (k,)
+        Normalised innovation squared z' S^-1 z, before any adaptation.
+    factor : ndarray, shape (k,)
+        By how much R was inflated: 1 as stated, inf where the observation was rejected.
+    """
+
+    z: Array
+    sd: Array
+    nis: Array
+    factor: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Solution:
+    """Result of fusing a recording.
+
+    Parameters
+    ----------
+    name : str
+        Of the recording.
+    system : str
+        Of the recipe that navigated.
+    trajectory : Trajectory
+        The IMU's path, the box's attitude; first row at the end of alignment.
+    states : dict of str to ndarray, shape (n, k)
+        Further states at the trajectory's times by block name: "gyro_bias" [rad/s],
+        "accel_bias" [m/s^2], "mounting" [rad], "odometer_scale", ...
+    states_sd : dict of str to ndarray, shape (n, k)
+        Their standard deviations.
+    innovations : dict of str to Innovations
+        By channel: "position", "velocity", "nonholonomic", "zero_velocity", "odometer", ...
+    decisions : tuple of Decision
+    outages : tuple of (float, float)
+        Withheld stretches, seconds after the first IMU sample.
+    start : float
+        Time of the first IMU sample [s].
+    notes : tuple of Note
+        What was mended in the recording.
+    """
+
+    name: str
+    system: str
+    trajectory: Trajectory
+    states: dict[str, Array]
+    states_sd: dict[str, Array]
+    innovations: dict[str, Innovations]
+    decisions: tuple[Decision, ...]
+    outages: tuple[tuple[float, float], ...]
+    start: float
+    notes: tuple[Note, ...] = field(default=())
+
+    def in_outage(self, time: Array) -> NDArray[np.bool_]:
+        """Which times lie in a withheld stretch.
+
+        Parameters
+        ----------
+        time : ndarray, shape (n,)
+            [s] on the IMU clock.
+
+        Returns
+        -------
+        ndarray of bool, shape (n,)
+        """
+        inside = np.zeros(len(time), bool)
+        for a, b in self.outages:
+            inside |= (time - self.start >= a) & (time - self.start < b)
+        return inside
