@@ -134,7 +134,9 @@ def ecef_to_lla(ecef: ArrayLike) -> Array:
     beta = np.arctan2(z, p * (1.0 - FLATTENING))
     lat = beta
     for _ in range(4):
-        lat = np.arctan2(z + second * b * np.sin(beta) ** 3, p - ECCENTRICITY_2 * SEMI_MAJOR * np.cos(beta) ** 3)
+        lat = np.arctan2(
+            z + second * b * np.sin(beta) ** 3, p - ECCENTRICITY_2 * SEMI_MAJOR * np.cos(beta) ** 3
+        )
         beta = np.arctan2((1.0 - FLATTENING) * np.sin(lat), np.cos(lat))
     _, r_n = radii(np.sin(lat))
     h = p * np.cos(lat) + z * np.sin(lat) - SEMI_MAJOR**2 / r_n

@@ -1,0 +1,1 @@
+"""The inertial room: increments, the one error-state layout, mechanisation, dynamics, propagation."""
