@@ -74,9 +74,7 @@ class _Motion(NamedTuple):
 
 
 def _cross(a: Array, b: Array) -> Array:
-    return np.stack(
-        [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-    )
+    return np.stack([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]])
 
 
 def _into_body(c_nb: Array, x_n: Array) -> Array:
@@ -94,9 +92,7 @@ def _body_rate(angles: Array, rates: Array, accelerations: Array) -> tuple[Array
     ddr, ddp, ddh = accelerations
     # the heading axis in body axes, e = (-sp, sr cp, cr cp), and its derivative
     e = np.stack([-s[1], s[0] * c[1], c[0] * c[1]])
-    de = np.stack(
-        [-c[1] * dp, c[0] * c[1] * dr - s[0] * s[1] * dp, -s[0] * c[1] * dr - c[0] * s[1] * dp]
-    )
+    de = np.stack([-c[1] * dp, c[0] * c[1] * dr - s[0] * s[1] * dp, -s[0] * c[1] * dr - c[0] * s[1] * dp])
     rate = np.stack([dr + e[0] * dh, c[0] * dp + e[1] * dh, -s[0] * dp + e[2] * dh])
     turning = de * dh + e * ddh
     return rate, turning + np.stack([ddr, c[0] * ddp - s[0] * dr * dp, -s[0] * ddp - c[0] * dr * dp])
@@ -183,7 +179,9 @@ def rates(path: Path, t: Any, vehicle: Vehicle = AT_AXLE) -> tuple[Array, Array]
     lever = np.array(vehicle.imu).reshape(3, *(1,) * (m.v_c.ndim - 1))
     gravity = _into_body(m.c_nc, _gravity(m, _into_level(m.c_nc, lever + 0.0 * m.v_c)))
     f = m.dv_c + _cross(w_ie + w_in, m.v_c) - gravity
-    f += _cross(m.dw_nc + dw_in, lever) + _cross(w_ib, _cross(w_ib, lever)) - _cross(w_ie, _cross(w_ie, lever))
+    f += (
+        _cross(m.dw_nc + dw_in, lever) + _cross(w_ib, _cross(w_ib, lever)) - _cross(w_ie, _cross(w_ie, lever))
+    )
     c_cb = vehicle.c_cb
     return _into_body(c_cb, w_ib), _into_body(c_cb, f)
 

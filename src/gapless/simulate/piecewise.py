@@ -91,7 +91,7 @@ def staircase(durations: ArrayLike, values: ArrayLike, width: float) -> Piecewis
     values : array_like, shape (k,)
         The levels.
     width : float
-        How long a corner takes [s]; less where a neighbouring level is shorter.
+        How long a corner takes [s]; less where a neighbouring level is held for less.
 
     Returns
     -------
@@ -100,7 +100,8 @@ def staircase(durations: ArrayLike, values: ArrayLike, width: float) -> Piecewis
     durations, values = np.asarray(durations, float), np.asarray(values, float)
     corner = np.flatnonzero(np.diff(values))
     time = np.cumsum(durations)[corner]
-    span = np.minimum(width, np.minimum(durations[corner], durations[corner + 1]))
+    run = np.diff(time, prepend=0.0, append=np.sum(durations))
+    span = np.minimum(width, np.minimum(run[:-1], run[1:]))
     knots = np.zeros(2 * len(corner) + 2)
     knots[1:-1:2], knots[2:-1:2], knots[-1] = time - span / 2.0, time + span / 2.0, np.sum(durations)
     coefficients = np.zeros((2 * len(corner) + 1, len(_SMOOTHSTEP)))

@@ -1,0 +1,146 @@
+"""A whole simulated recording from one call, with the truth as its reference."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.random import Generator
+
+from gapless.errors import ConfigError
+from gapless.recording import Recording
+from gapless.sensors.grades import Grade
+from gapless.sensors.grades import grade as named_grade
+from gapless.sensors.imu_errors import corrupt
+from gapless.simulate.motion import AT_AXLE, Vehicle, increments, trajectory
+from gapless.simulate.path import Path, Segment
+from gapless.simulate.profiles import fit
+from gapless.simulate.profiles import profile as named_profile
+from gapless.simulate.receivers import STANDARD, Receiver, WheelSensor, fixes, odometer
+from gapless.units import DEG
+
+ORIGIN = (32.05 * DEG, 118.79 * DEG, 20.0)
+"""Where a drive begins if nothing is said: latitude, longitude [rad], height [m]; that of wang2018."""
+HEADING = 45.0 * DEG
+"""Its first heading [rad]."""
+ROLL_GRADIENT = 0.007
+"""Roll of a passenger car out of a turn [rad / (m/s^2)], four degrees per g."""
+
+
+def drive(
+    profile: str | Sequence[Segment] = "urban",
+    duration: float = 1800.0,
+    seed: int = 1,
+    *,
+    origin: tuple[float, float, float] = ORIGIN,
+    heading: float = HEADING,
+    roll_gradient: float = ROLL_GRADIENT,
+) -> Path:
+    """The path of a profile, as `simulate` drives it.
+
+    Parameters
+    ----------
+    profile : str or sequence of Segment
+        A name in `PROFILES`, or what to drive.
+    duration : float
+        At most this long [s]; a profile of fixed length may end before.
+    seed : int
+        The same seed drives the same path, whatever measures it.
+    origin : tuple of 3 floats
+        Latitude, longitude [rad], height [m] of the rear axle at time 0.
+    heading : float
+        At time 0 [rad].
+    roll_gradient : float
+        Roll out of a turn per lateral acceleration [rad / (m/s^2)].
+
+    Returns
+    -------
+    Path
+
+    Raises
+    ------
+    ConfigError
+        If the profile is unknown or the duration is not positive.
+    """
+    if not 0.0 < duration < float("inf"):
+        raise ConfigError(f"a drive cannot last {duration:g} s; give a positive duration")
+    chance = _streams(seed)[0]
+    segments = (
+        named_profile(profile)(duration, chance) if isinstance(profile, str) else fit(profile, duration)
+    )
+    return Path.from_segments(segments, origin, heading, roll_gradient=roll_gradient)
+
+
+def simulate(
+    profile: str | Sequence[Segment] = "urban",
+    grade: str | Grade = "consumer",
+    duration: float = 1800.0,
+    seed: int = 1,
+    *,
+    rate: float | None = None,
+    vehicle: Vehicle = AT_AXLE,
+    receiver: Receiver = STANDARD,
+    wheels: WheelSensor | None = None,
+    origin: tuple[float, float, float] = ORIGIN,
+    heading: float = HEADING,
+    reference_rate: float = 10.0,
+) -> Recording:
+    """A recording of a drive that never was.
+
+    Parameters
+    ----------
+    profile : str or sequence of Segment
+        A name in `PROFILES`, or what to drive.
+    grade : str or Grade
+        Of the IMU; "perfect" for one without errors.
+    duration : float
+        At most this long [s]; a profile of fixed length may end before.
+    seed : int
+        The path, the IMU, the receiver and the odometer draw from streams of their own.
+    rate : float, optional
+        IMU samples per second [Hz]; that of the grade if not given.
+    vehicle : Vehicle
+        Where IMU and antenna are, and how the box is turned.
+    receiver : Receiver
+    wheels : WheelSensor, optional
+        No odometer if not given.
+    origin : tuple of 3 floats
+        Latitude, longitude [rad], height [m] of the rear axle at time 0.
+    heading : float
+        At time 0 [rad].
+    reference_rate : float
+        Rows of truth per second [Hz]; the first is at time 0, where the first IMU interval starts.
+
+    Returns
+    -------
+    Recording
+        The reference is the truth of the IMU point and the box's attitude, on the IMU clock.
+
+    Raises
+    ------
+    ConfigError
+        If the profile or the grade is unknown or the duration is not positive.
+    """
+    budget = named_grade(grade) if isinstance(grade, str) else grade
+    path = drive(profile, duration, seed, origin=origin, heading=heading)
+    _, of_imu, of_receiver, of_wheels = _streams(seed)
+    true = increments(path, rate or budget.rate, vehicle)
+    speed, _ = path.along(true.time)
+    imu, _ = corrupt(true, budget, of_imu, speed)
+    rows = np.arange(int(np.floor(path.duration * reference_rate + 1e-9)) + 1) / reference_rate
+    name = profile if isinstance(profile, str) else "custom"
+    return Recording(
+        f"{name}-{budget.name}-{seed}",
+        imu,
+        fixes(path, receiver, of_receiver, vehicle),
+        None if wheels is None else odometer(path, wheels, of_wheels),
+        trajectory(path, rows, vehicle),
+        "imu",
+        vehicle.lever_arm,
+        budget.name,
+    )
+
+
+def _streams(seed: int) -> list[Generator]:
+    """Independent streams for path, IMU, receiver and odometer."""
+    return [np.random.default_rng(s) for s in np.random.SeedSequence(seed).spawn(4)]
