@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import NoReturn
 
 import numpy as np
@@ -147,7 +148,7 @@ def plan(texts: Iterable[str], duration: float) -> tuple[Outage, ...]:
             _refuse(text, f"the recording lasts {duration:.0f} s and no outage fits", "begin earlier")
         outages += chosen
     outages.sort()
-    for a, b in zip(outages, outages[1:], strict=False):
+    for a, b in pairwise(outages):
         if b.start < a.end:
             raise ConfigError(f"outages {a} and {b} overlap; join them to {a.start:g}:{max(a.end, b.end):g}")
     return tuple(outages)

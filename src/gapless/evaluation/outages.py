@@ -1,0 +1,221 @@
+"""What each outage cost: errors from its first withheld epoch to its last, and what to think of them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from gapless.evaluation.errors import Errors
+from gapless.evaluation.statistics import rms
+from gapless.recording import Array, Imu
+from gapless.scenarios import Outage, withheld
+
+BEFORE_MOTION: Final = "before motion + 30 s"
+NO_MOTION: Final = "no motion"
+LITTLE_TRUTH: Final = "too little truth"
+IMU_GAP: Final = "imu gap"
+
+SETTLING: Final = 30.0
+"""An outage that begins less than this [s] after the first motion tests the alignment instead."""
+_STANDING: Final = 1.0
+"""Top speed [m/s] of an outage without motion."""
+_IMU_GAP: Final = 0.5
+"""IMU stamps further apart than this [s], and than five median intervals, are a gap."""
+
+
+@dataclass(frozen=True)
+class OutageScore:
+    """Errors in one outage; NaN where the truth does not tell.
+
+    Parameters
+    ----------
+    start, end : float
+        [s] after the first IMU sample.
+    labels : tuple of str
+        Why the outage is reported apart: "before motion + 30 s", "no motion", "too little truth",
+        "imu gap"; empty where it counts.
+    truth_epochs : int
+        Epochs at which an error is known.
+    distance : float
+        Travelled in the outage [m].
+    horizontal_max, horizontal_rmse, horizontal_end : float
+        Horizontal position error: largest, root mean square, and at the last epoch [m].
+    vertical_max : float
+        Largest height error [m], the height offset of the truth taken off.
+    along_max, cross_max : float
+        Largest error along the truth's course and across it [m].
+    velocity_max : float
+        Largest horizontal velocity error [m/s].
+    heading_max : float
+        Largest heading error [rad].
+    percent : float
+        `horizontal_max` in percent of `distance`; NaN without motion.
+    coverage : float
+        Share of epochs whose stated 95 % ellipse holds the truth.
+    nees : float
+        Mean horizontal NEES, two degrees of freedom.
+    """
+
+    start: float
+    end: float
+    labels: tuple[str, ...]
+    truth_epochs: int
+    distance: float
+    horizontal_max: float
+    horizontal_rmse: float
+    horizontal_end: float
+    vertical_max: float
+    along_max: float
+    cross_max: float
+    velocity_max: float
+    heading_max: float
+    percent: float
+    coverage: float
+    nees: float
+
+    @property
+    def counts(self) -> bool:
+        """Whether nothing sets the outage apart from the pool."""
+        return not self.labels
+
+
+def score_outage(
+    errors: Errors, outage: Outage, start: float, height_offset: float = 0.0, labels: tuple[str, ...] = ()
+) -> OutageScore:
+    """Score one outage.
+
+    Parameters
+    ----------
+    errors : Errors
+        Over the whole recording.
+    outage : Outage
+    start : float
+        IMU time [s] that outage times count from: the first IMU sample plus the position clock
+        offset, because outages are cut by logged GNSS stamps.
+    height_offset : float
+        Solution above truth outside the outages [m]; taken off.
+    labels : tuple of str
+        From what the truth cannot tell; those that it can are added.
+
+    Returns
+    -------
+    OutageScore
+    """
+    begin, end = start + outage.start, start + outage.end
+    part = errors.slice(begin, end)
+    moved = np.interp([begin, end], errors.time, errors.distance) if len(errors) else np.zeros(2)
+    distance = float(moved[1] - moved[0])
+    standing = not (part.speed > _STANDING).any()
+    known = part.take(np.isfinite(part.horizontal))
+    labels += (NO_MOTION,) * (standing and len(part) > 0)
+    labels += (LITTLE_TRUTH,) * _too_little(known.time, begin, end)
+    horizontal_max = _largest(known.horizontal)
+    inside = known.inside()[np.isfinite(known.nees)]
+    return OutageScore(
+        start=outage.start,
+        end=outage.end,
+        labels=labels,
+        truth_epochs=len(known),
+        distance=distance,
+        horizontal_max=horizontal_max,
+        horizontal_rmse=rms(known.horizontal),
+        horizontal_end=float(known.horizontal[-1]) if len(known) else math.nan,
+        vertical_max=_largest(known.position[:, 2] + height_offset),
+        along_max=_largest(known.along),
+        cross_max=_largest(known.cross),
+        velocity_max=_largest(np.hypot(known.velocity[:, 0], known.velocity[:, 1])),
+        heading_max=_largest(known.attitude[:, 2]),
+        percent=math.nan if standing or distance <= 0.0 else 100.0 * horizontal_max / distance,
+        coverage=float(inside.mean()) if len(inside) else math.nan,
+        nees=_mean(known.nees),
+    )
+
+
+def score_outages(
+    errors: Errors,
+    outages: Sequence[Outage],
+    start: float,
+    imu: Imu,
+    first_motion: float,
+    clock_offset: float = 0.0,
+) -> tuple[OutageScore, ...]:
+    """Score every outage, those that are set apart too.
+
+    Parameters
+    ----------
+    errors : Errors
+    outages : sequence of Outage
+    start : float
+        Time of the first IMU sample [s].
+    imu : Imu
+        Where its gaps are looked for.
+    first_motion : float
+        Logged GNSS time at which driving began [s].
+    clock_offset : float
+        What has to be added to logged GNSS stamps to land on the IMU clock [s].
+
+    Returns
+    -------
+    tuple of OutageScore
+    """
+    offset = height_offset(errors, outages, start + clock_offset)
+    rise = 0.0 if math.isnan(offset) else offset
+    scores = []
+    for outage in outages:
+        labels: tuple[str, ...] = ()
+        if start + outage.start < first_motion + SETTLING:
+            labels += (BEFORE_MOTION,)
+        if _has_gap(imu, start + outage.start, start + outage.end):
+            labels += (IMU_GAP,)
+        scores.append(score_outage(errors, outage, start + clock_offset, rise, labels))
+    return tuple(scores)
+
+
+def height_offset(errors: Errors, outages: Sequence[Outage], start: float) -> float:
+    """How far the solution lies above the truth outside outages: the geoid, as a rule.
+
+    Parameters
+    ----------
+    errors : Errors
+    outages : sequence of Outage
+    start : float
+        IMU time that outage times count from [s].
+
+    Returns
+    -------
+    float
+        Median [m]; NaN if no error is known outside.
+    """
+    up = -errors.take(~withheld(errors.time, outages, start)).position[:, 2]
+    up = up[np.isfinite(up)]
+    return float(np.median(up)) if len(up) else math.nan
+
+
+def _largest(values: Array) -> float:
+    x = np.abs(values[np.isfinite(values)])
+    return float(x.max()) if len(x) else math.nan
+
+
+def _mean(values: Array) -> float:
+    x = values[np.isfinite(values)]
+    return float(x.mean()) if len(x) else math.nan
+
+
+def _too_little(time: Array, begin: float, end: float) -> bool:
+    """Whether truth is known in under half of the seconds, or not at all in the last quarter."""
+    if not len(time):
+        return True
+    seconds = len(np.unique(np.floor(time - begin)))
+    return seconds < 0.5 * math.ceil(end - begin) or float(time[-1]) < end - 0.25 * (end - begin)
+
+
+def _has_gap(imu: Imu, begin: float, end: float) -> bool:
+    if len(imu) < 2:
+        return True
+    step = np.diff(imu.time)
+    gap = step > max(_IMU_GAP, 5.0 * float(np.median(step)))
+    return bool((gap & (imu.time[1:] > begin) & (imu.time[:-1] < end)).any())

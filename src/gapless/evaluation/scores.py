@@ -1,0 +1,195 @@
+"""The score of a solution: against its reference, or else against the fixes that were withheld."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+
+from gapless.evaluation.errors import Errors, at_antenna, gnss_truth, solution_errors
+from gapless.evaluation.motion import first_motion
+from gapless.evaluation.outages import OutageScore, height_offset, score_outages
+from gapless.evaluation.statistics import Consistency, Spread, consistency, rms, spread
+from gapless.recording import Recording
+from gapless.scenarios import Outage, withheld
+from gapless.solution import Solution
+
+
+@dataclass(frozen=True)
+class Accuracy:
+    """Errors over many epochs.
+
+    Parameters
+    ----------
+    epochs : int
+        With a known position error.
+    horizontal_rmse, horizontal_p95, horizontal_max : float
+        Of the horizontal position error [m].
+    vertical_rmse : float
+        [m], the height offset taken off.
+    velocity_rmse : float
+        Of the horizontal velocity error [m/s].
+    roll_rmse, pitch_rmse, heading_rmse : float
+        [rad]
+    coverage : float
+        Share of epochs whose stated 95 % ellipse holds the truth.
+    nees : Consistency
+        Of the horizontal error; the band supposes independent epochs.
+    """
+
+    epochs: int
+    horizontal_rmse: float
+    horizontal_p95: float
+    horizontal_max: float
+    vertical_rmse: float
+    velocity_rmse: float
+    roll_rmse: float
+    pitch_rmse: float
+    heading_rmse: float
+    coverage: float
+    nees: Consistency
+
+
+@dataclass(frozen=True, eq=False)
+class Scores:
+    """Everything that comparing a solution with a truth gave.
+
+    Parameters
+    ----------
+    truth : str
+        "reference" or "gnss".
+    statement : str
+        What the truth is, for people.
+    clock_offset : float
+        Added to the truth's stamps to land on the IMU clock [s].
+    height_offset : float
+        Solution above truth outside outages [m], taken off all vertical errors; NaN if unknown.
+    errors : Errors
+        Epoch by epoch.
+    aided : Accuracy
+        Outside outages. Against the GNSS itself that is agreement with what was used, not accuracy.
+    fixes_rmse : float
+        Horizontal RMSE of the raw fixes against the reference [m]; NaN without one.
+    outages : tuple of OutageScore
+    """
+
+    truth: str
+    statement: str
+    clock_offset: float
+    height_offset: float
+    errors: Errors
+    aided: Accuracy
+    fixes_rmse: float
+    outages: tuple[OutageScore, ...]
+
+    @property
+    def pool(self) -> tuple[OutageScore, ...]:
+        """Outages that no label sets apart."""
+        return tuple(o for o in self.outages if o.counts)
+
+    @property
+    def horizontal(self) -> Spread:
+        """Spread of the largest horizontal error over the pool [m]."""
+        return spread(o.horizontal_max for o in self.pool)
+
+
+def score(solution: Solution, recording: Recording) -> Scores:
+    """Score a solution against the recording's reference, or its GNSS where there is none.
+
+    Withheld fixes are still in the recording, so they can be the truth of the outages. The
+    clock offsets are those of the decisions "clock offset, position" and "clock offset, velocity".
+
+    Parameters
+    ----------
+    solution : Solution
+    recording : Recording
+        The one that was fused, nothing taken out.
+
+    Returns
+    -------
+    Scores
+    """
+    late, late_velocity = (_decided(solution, f"clock offset, {of}") for of in ("position", "velocity"))
+    fixes = gnss_truth(recording.gnss, late, late_velocity)
+    reference, found, offset = recording.reference, solution.trajectory, 0.0
+    if reference is None:
+        truth, found = fixes, at_antenna(found, recording.lever_arm)
+    else:
+        truth, offset = reference, late if recording.reference_clock == "gnss" else 0.0
+    errors = solution_errors(found, truth, offset)
+    outages = [Outage(a, b) for a, b in solution.outages]
+    outside = ~withheld(errors.time, outages, solution.start + late)
+    rise = height_offset(errors, outages, solution.start + late)
+    return Scores(
+        truth="gnss" if reference is None else "reference",
+        statement=_STATEMENTS[reference is None],
+        clock_offset=late if reference is None else offset,
+        height_offset=rise,
+        errors=errors,
+        aided=accuracy(errors.take(outside), rise),
+        fixes_rmse=math.nan
+        if reference is None
+        else rms(solution_errors(reference, fixes, -offset).horizontal),
+        outages=score_outages(errors, outages, solution.start, recording.imu, first_motion(recording), late),
+    )
+
+
+def accuracy(errors: Errors, height_offset: float = 0.0) -> Accuracy:
+    """Errors over all given epochs.
+
+    Parameters
+    ----------
+    errors : Errors
+    height_offset : float
+        Solution above truth [m]; taken off.
+
+    Returns
+    -------
+    Accuracy
+    """
+    horizontal = errors.horizontal
+    band = consistency(errors.nees, 2)
+    size = spread(horizontal)
+    return Accuracy(
+        epochs=size.count,
+        horizontal_rmse=size.rms,
+        horizontal_p95=size.p95,
+        horizontal_max=size.worst,
+        vertical_rmse=rms(errors.position[:, 2] + height_offset),
+        velocity_rmse=rms(np.hypot(errors.velocity[:, 0], errors.velocity[:, 1])),
+        roll_rmse=rms(errors.attitude[:, 0]),
+        pitch_rmse=rms(errors.attitude[:, 1]),
+        heading_rmse=rms(errors.attitude[:, 2]),
+        coverage=band.within,
+        nees=band,
+    )
+
+
+def pool_spread(scores: Iterable[Scores]) -> Spread:
+    """Spread of the largest horizontal error over the pooled outages of several recordings.
+
+    Parameters
+    ----------
+    scores : iterable of Scores
+
+    Returns
+    -------
+    Spread
+        [m]
+    """
+    return spread(o.horizontal_max for one in scores for o in one.pool)
+
+
+_STATEMENTS = (
+    "the recording's reference, which navigation never sees",
+    "the GNSS itself: in outages the withheld fixes, elsewhere the very fixes that were used",
+)
+
+
+def _decided(solution: Solution, name: str) -> float:
+    for decision in solution.decisions:
+        if decision.name == name and isinstance(decision.value, (int, float)):
+            return float(decision.value)
+    return 0.0
