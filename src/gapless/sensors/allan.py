@@ -85,12 +85,18 @@ def read_allan(tau: Array, deviation: Array) -> AllanReading:
     Returns
     -------
     AllanReading
-        The noise density from the times up to the minimum at which the slope is -1/2 within 0.15
-        (all of them if there are none), the instability from the minimum over 0.664.
+        The instability is the first minimum (the one before the deviation rises by a tenth: that
+        of a Gauss-Markov process falls again later) over 0.664; the noise density comes from the
+        first stretch before it where the slope is -1/2 within 0.1, or from all of that if none is.
     """
-    lowest = int(np.argmin(deviation))
+    risen = deviation > 1.1 * np.minimum.accumulate(deviation)
+    lowest = int(np.argmin(deviation[: int(np.argmax(risen))] if risen.any() else deviation))
     slope = np.gradient(np.log(deviation), np.log(tau))
-    white = (np.abs(slope + 0.5) < 0.15) & (np.arange(len(tau)) <= lowest)
-    chosen = white if white.any() else np.ones(len(tau), bool)
+    white = np.abs(slope[: lowest + 1] + 0.5) < 0.1
+    first = int(np.argmax(white))
+    ends = np.flatnonzero(~white[first:])
+    chosen = (
+        slice(first, first + int(ends[0]) if len(ends) else lowest + 1) if white.any() else slice(lowest + 1)
+    )
     noise = float(np.exp(np.mean(np.log(deviation[chosen] * np.sqrt(tau[chosen])))))
     return AllanReading(noise, float(deviation[lowest]) / _FLICKER, float(tau[lowest]))

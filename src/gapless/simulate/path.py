@@ -202,7 +202,7 @@ class Path:
     def _table(self) -> tuple[Array, Array]:
         """Offsets of latitude, longitude, height from the origin and their rates, every `_STEP`."""
         count = int(np.ceil(self.duration / _STEP - 1e-9)) + 1
-        grid: Array = _STEP * np.arange(count)
+        grid = _STEP * np.arange(count, dtype=np.float64)
         nodes, weights, partial = gauss_legendre(4)
         v_n = self._velocity(grid[:-1, None] + _STEP * nodes)
         offsets = np.zeros((3, count))

@@ -90,7 +90,7 @@ class WheelSensor:
 def _epochs(path: Path, rate: float, reach: tuple[float, float]) -> Array:
     """Stamps of a sensor whose readings hold for from `reach[0]` to `reach[1]` seconds before them."""
     stamps = np.arange(int(np.floor(path.duration * rate + 1e-9)) + 1) / rate
-    return stamps[(stamps - reach[1] >= 0.0) & (stamps - reach[0] <= path.duration)]
+    return stamps[(stamps - reach[1] >= 0.0) & (stamps - reach[0] <= path.duration + 1e-9)]
 
 
 def fixes(path: Path, receiver: Receiver, rng: Generator, vehicle: Vehicle) -> Gnss:

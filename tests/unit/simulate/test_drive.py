@@ -1,0 +1,65 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from gapless.errors import ConfigError
+from gapless.sensors import grade
+from gapless.simulate import Receiver, Segment, Vehicle, WheelSensor, drive, increments, simulate
+
+CAR = Vehicle(imu=(1.0, 0.0, -0.5), antenna=(0.5, 0.2, -1.6), mounting=(0.0, 0.02, 0.1))
+
+
+def test_a_recording_is_whole():
+    r = simulate("urban", "consumer", 120.0, 7, vehicle=CAR, wheels=WheelSensor())
+    assert len(r.imu) == 12000
+    assert len(r.gnss) == 121
+    assert len(r.odometer) == 1201
+    assert r.imu.rate == pytest.approx(100.0)
+    assert r.grade == "consumer"
+    assert r.reference_clock == "imu"
+    assert np.array_equal(r.lever_arm, CAR.lever_arm)
+    ref = r.reference
+    assert len(ref) == 1201
+    assert set(ref.source) == {"reference"}
+    assert np.isin(ref.time[1:], r.imu.time).all()
+    assert ref.euler[0, 2] == pytest.approx(np.pi / 4 + 0.1)
+
+
+def test_the_perfect_grade_measures_the_truth():
+    r = simulate("carpark", "perfect", 60.0, 2, rate=200.0, vehicle=CAR)
+    exact = increments(drive("carpark", 60.0, 2), 200.0, CAR)
+    assert np.array_equal(r.imu.dtheta, exact.dtheta)
+    assert np.array_equal(r.imu.dvel, exact.dvel)
+
+
+def test_the_same_seed_gives_the_same_bits():
+    a, b, c = (simulate("urban", "consumer", 60.0, seed) for seed in (1, 1, 2))
+    assert np.array_equal(a.imu.dvel, b.imu.dvel)
+    assert np.array_equal(a.gnss.lla, b.gnss.lla)
+    assert not np.array_equal(a.imu.dvel, c.imu.dvel)
+
+
+def test_sensors_draw_from_streams_of_their_own():
+    base = simulate("urban", "consumer", 60.0, 1)
+    other = simulate("urban", "navigation", 60.0, 1, rate=100.0, wheels=WheelSensor())
+    assert np.array_equal(base.gnss.lla, other.gnss.lla)
+    assert np.array_equal(base.reference.lla, other.reference.lla)
+    late = simulate("urban", "consumer", 60.0, 1, receiver=Receiver(position_delay=0.2))
+    assert np.array_equal(base.imu.dvel, late.imu.dvel)
+
+
+def test_segments_and_grades_of_ones_own():
+    mine = replace(grade("perfect"), name="mine", rate=50.0)
+    r = simulate([Segment(5.0), Segment(5.0, 1.0)], mine, 8.0)
+    assert len(r.imu) == 400
+    assert r.name == "custom-mine-1"
+    # three seconds at 1 m/s^2 from a corner symmetric about 5 s: 3 m/s, and 4.5 m plus W^2 a / 24 or less
+    assert_allclose(np.linalg.norm(r.reference.v_n[-1]), 3.0, atol=1e-12)
+
+
+@pytest.mark.parametrize("duration", [0.0, -5.0, float("nan"), float("inf")])
+def test_a_drive_needs_a_duration(duration):
+    with pytest.raises(ConfigError, match="positive duration"):
+        simulate(duration=duration)
