@@ -1,0 +1,1 @@
+"""Finding out where things start: attitude, clocks, mounting."""

@@ -1,0 +1,1 @@
+"""The filter room: it knows an error vector and a covariance, not an INS."""

@@ -1,0 +1,1 @@
+"""How R bends to what an observation says: one rule a file."""

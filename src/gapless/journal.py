@@ -1,0 +1,196 @@
+"""What a navigator writes down on its way; a replay never writes the same moment twice."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from gapless import attitude
+from gapless.inertial.belief import Belief
+from gapless.inertial.layout import Layout
+from gapless.recording import Array, Trajectory
+from gapless.solution import Innovations
+
+
+@dataclass
+class _Channel:
+    time: list[float] = field(default_factory=list)
+    z: list[Array] = field(default_factory=list)
+    sd: list[Array] = field(default_factory=list)
+    nis: list[float] = field(default_factory=list)
+    factor: list[float] = field(default_factory=list)
+
+    def cut(self, n: int) -> None:
+        for column in (self.time, self.z, self.sd, self.nis, self.factor):
+            del column[n:]
+
+
+class Journal:
+    """Rows, innovations and alignments.
+
+    Parameters
+    ----------
+    layout : Layout
+    """
+
+    def __init__(self, layout: Layout) -> None:
+        self.layout = layout
+        self.last = -math.inf
+        self.times: list[float] = []
+        self.states: list[Array] = []
+        self.variances: list[Array] = []
+        self.sources: list[str] = []
+        self.channels: dict[str, _Channel] = {}
+        self.latest: dict[str, float] = {}
+        self.alignments: list[tuple[float, str]] = []
+
+    def row(self, time: float, belief: Belief, source: str) -> None:
+        """Write the belief down.
+
+        Parameters
+        ----------
+        time : float
+            [s]
+        belief : Belief
+        source : str
+            What holds it.
+        """
+        if time <= self.last:
+            return
+        self.last = time
+        p = belief.P
+        self.times.append(time)
+        self.states.append(belief.estimate().copy())
+        cross = (p[0, 1], p[6, 7], p[6, 8], p[7, 8])
+        self.variances.append(np.concatenate([p.diagonal(), cross]))
+        self.sources.append(source)
+
+    def innovation(self, channel: str, time: float, z: Array, sd: Array, nis: float, factor: float) -> None:
+        """Write an innovation down.
+
+        Parameters
+        ----------
+        channel : str
+        time : float
+        z, sd : ndarray
+        nis, factor : float
+            As in `Innovations`.
+        """
+        if time <= self.latest.get(channel, -math.inf):
+            return
+        self.latest[channel] = time
+        c = self.channels.setdefault(channel, _Channel())
+        c.time.append(time)
+        c.z.append(z)
+        c.sd.append(sd)
+        c.nis.append(nis)
+        c.factor.append(factor)
+
+    def align(self, time: float, evidence: str) -> None:
+        """Write an alignment down.
+
+        Parameters
+        ----------
+        time : float
+        evidence : str
+        """
+        if not self.alignments or time > self.alignments[-1][0]:
+            self.alignments.append((time, evidence))
+
+    def mark(self) -> Any:
+        """Where the journal stands, for `rewind`.
+
+        Returns
+        -------
+        object
+        """
+        counts = {name: len(c.time) for name, c in self.channels.items()}
+        return self.last, len(self.times), counts, dict(self.latest), len(self.alignments)
+
+    def rewind(self, mark: Any) -> None:
+        """Forget what was written after a mark.
+
+        Parameters
+        ----------
+        mark : object
+            From `mark`.
+        """
+        self.last, n, counts, latest, aligned = mark
+        self.latest = dict(latest)
+        for rows in (self.times, self.states, self.variances, self.sources):
+            del rows[n:]
+        for name, channel in self.channels.items():
+            channel.cut(counts.get(name, 0))
+        del self.alignments[aligned:]
+
+    def after(self, other: Journal) -> None:
+        """Start empty where another journal stands.
+
+        Parameters
+        ----------
+        other : Journal
+        """
+        self.last, self.latest = other.last, dict(other.latest)
+
+    def trajectory(self) -> Trajectory:
+        """All rows as a trajectory.
+
+        Returns
+        -------
+        Trajectory
+        """
+        n = self.layout.n
+        x = np.array(self.states).reshape(-1, n + 1)
+        var = np.array(self.variances).reshape(-1, n + 4)
+        euler = attitude.to_euler(x[:, 6:10])
+        sd = np.sqrt(np.column_stack([var[:, :6], _euler_variance(var, n, euler)]))
+        return Trajectory(
+            np.array(self.times), x[:, :3], x[:, 3:6], euler, sd, var[:, n], np.array(self.sources, dtype=str)
+        )
+
+    def blocks(self) -> tuple[dict[str, Array], dict[str, Array]]:
+        """Additive blocks at the rows, and their standard deviations.
+
+        Returns
+        -------
+        states, sds : dict of str to ndarray, shape (rows, k)
+        """
+        x = np.array(self.states).reshape(-1, self.layout.n + 1)
+        var = np.array(self.variances).reshape(-1, self.layout.n + 4)
+        names = [name for name, s in self.layout.blocks.items() if s.start >= 9]
+        where = self.layout.blocks
+        states = {name: x[:, where[name].start + 1 : where[name].stop + 1] for name in names}
+        return states, {name: np.sqrt(var[:, where[name]]) for name in names}
+
+    def innovations(self) -> dict[str, Innovations]:
+        """Innovations by channel.
+
+        Returns
+        -------
+        dict of str to Innovations
+        """
+        return {
+            name: Innovations(*(np.array(v) for v in (c.time, c.z, c.sd, c.nis, c.factor)))
+            for name, c in self.channels.items()
+            if c.time
+        }
+
+
+def _euler_variance(var: Array, n: int, euler: Array) -> Array:
+    """Variances of roll, pitch, heading from those of the rotation vector in NED.
+
+    d(heading) = phi_d + tan(pitch) (cos(heading) phi_n + sin(heading) phi_e), d(pitch) =
+    -sin(heading) phi_n + cos(heading) phi_e, d(roll) = (cos(heading) phi_n + sin(heading) phi_e)
+    / cos(pitch).
+    """
+    c, s = np.cos(euler[:, 2]), np.sin(euler[:, 2])
+    nn, ee, dd = var[:, 6], var[:, 7], var[:, 8]
+    ne, nd, ed = var[:, n + 1], var[:, n + 2], var[:, n + 3]
+    along = c * c * nn + s * s * ee + 2.0 * c * s * ne
+    across = s * s * nn + c * c * ee - 2.0 * c * s * ne
+    t = np.tan(euler[:, 1])
+    heading = dd + t * t * along + 2.0 * t * (c * nd + s * ed)
+    return np.maximum(np.column_stack([along / np.cos(euler[:, 1]) ** 2, across, heading]), 0.0)

@@ -1,0 +1,79 @@
+"""What every sensor model shares: a reading in, an observation out, and the two roles."""
+
+from __future__ import annotations
+
+from typing import NamedTuple, Protocol, Self
+
+from gapless.events import Motion, Reading
+from gapless.inertial.belief import Belief
+from gapless.recording import Array
+
+
+class Observation(NamedTuple):
+    """z ~ H dx + v, v ~ N(0, R).
+
+    Parameters
+    ----------
+    z : ndarray, shape (m,)
+        Observed minus predicted.
+    H : ndarray, shape (m, n)
+    R : ndarray, shape (m, m)
+    """
+
+    z: Array
+    H: Array
+    R: Array
+
+
+class Sensor(Protocol):
+    """Turns readings into observations."""
+
+    def observe(self, belief: Belief, reading: Reading) -> Observation:
+        """Observation of a reading that holds for the belief's time.
+
+        Parameters
+        ----------
+        belief : Belief
+        reading : Reading
+
+        Returns
+        -------
+        Observation
+        """
+        ...
+
+
+class Constraint(Protocol):
+    """Observes without a reading: what the vehicle cannot do."""
+
+    def tick(self, belief: Belief, motion: Motion) -> Observation | None:
+        """Observation at the end of a tick, or None where the constraint does not hold.
+
+        Parameters
+        ----------
+        belief : Belief
+        motion : Motion
+
+        Returns
+        -------
+        Observation or None
+        """
+        ...
+
+    def hear(self, reading: Reading) -> None:
+        """Learn from what a sensor said (a GNSS speed that tells stops from driving).
+
+        Parameters
+        ----------
+        reading : Reading
+        """
+        ...
+
+    def copy(self) -> Self:
+        """An independent constraint with the same memory.
+
+        Returns
+        -------
+        Constraint
+        """
+        ...

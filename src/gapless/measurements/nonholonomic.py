@@ -1,0 +1,75 @@
+"""The non-holonomic constraint of a car, at ticks, while it drives forward."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Self
+
+import numpy as np
+
+from gapless.events import Motion, Reading
+from gapless.inertial.belief import Belief
+from gapless.measurements.base import Observation
+from gapless.measurements.vehicle import forward_speed, slip
+
+
+@dataclass
+class NonHolonomic:
+    """No slip sideways or upwards at the rear axle.
+
+    Parameters
+    ----------
+    lateral, vertical : float
+        Standard deviation of one update on a straight [m/s].
+    turn : float
+        Further standard deviation per lateral acceleration [s].
+    min_speed : float
+        Slower than this it says nothing: a standing car shows no direction [m/s].
+    axle : float
+        Forward coordinate of the rear axle from the box, where it is not a state [m].
+    mounting : tuple of 2 float
+        Pitch and yaw of the car's forward axis in the box, where they are not states [rad].
+    interval : float
+        Least time between updates [s].
+    """
+
+    lateral: float = 0.08
+    vertical: float = 0.3
+    turn: float = 0.1
+    min_speed: float = 1.0
+    axle: float = 0.0
+    mounting: tuple[float, float] = (0.0, 0.0)
+    interval: float = 0.1
+    last: float = -math.inf
+
+    def tick(self, belief: Belief, motion: Motion) -> Observation | None:
+        """Observation of lateral and vertical slip; see `Constraint.tick`."""
+        if motion.time - self.last < self.interval - 1e-3:
+            return None
+        layout, x = belief.layout, belief.estimate()
+        angles = np.asarray(self.mounting)
+        speed = forward_speed(x, layout.offsets, angles)
+        if speed < self.min_speed:
+            return None
+        self.last = motion.time
+        soft = speed / (speed + 1.0)
+        z, h, r = slip(
+            x,
+            layout.offsets,
+            layout.n,
+            angles,
+            self.axle,
+            motion.rate,
+            math.hypot(self.lateral * math.sqrt(soft), 0.05),
+            self.vertical,
+            self.turn,
+        )
+        return Observation(z, h, r)
+
+    def hear(self, reading: Reading) -> None:
+        """Nothing to learn."""
+
+    def copy(self) -> Self:
+        """An independent copy; see `Constraint.copy`."""
+        return type(self)(**vars(self))

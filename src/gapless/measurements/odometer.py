@@ -1,0 +1,41 @@
+"""Wheel speed, its scale a state."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from gapless.events import Reading
+from gapless.inertial.belief import Belief
+from gapless.measurements.base import Observation
+from gapless.measurements.vehicle import odometer
+
+
+@dataclass(frozen=True)
+class Odometer:
+    """Wheel speed.
+
+    Parameters
+    ----------
+    sd : float
+        Standard deviation of a reading [m/s].
+    correlation : float
+        Correlation time of its error [s].
+    mounting : tuple of 2 float
+        Pitch and yaw of the car's forward axis in the box, where they are not states [rad].
+    """
+
+    sd: float = 0.15
+    correlation: float = 0.5
+    mounting: tuple[float, float] = (0.0, 0.0)
+
+    def observe(self, belief: Belief, reading: Reading) -> Observation:
+        """Observation of the forward speed; see `Sensor.observe`."""
+        layout = belief.layout
+        sd = self.sd * max(1.0, self.correlation / max(reading.interval, 0.01)) ** 0.5
+        return Observation(
+            *odometer(
+                belief.x, layout.offsets, layout.n, np.asarray(self.mounting), float(reading.value[0]), sd
+            )
+        )
