@@ -92,7 +92,13 @@ class Scores:
     @property
     def horizontal(self) -> Spread:
         """Spread of the largest horizontal error over the pool [m]."""
-        return spread(o.horizontal_max for o in self.pool)
+        return pool_spread([self])
+
+    @property
+    def coverage(self) -> float:
+        """Share of the pool's truth epochs that the stated 95 % ellipses hold; NaN without any."""
+        told = [(o.coverage, o.truth_epochs) for o in self.pool if not math.isnan(o.coverage)]
+        return float(np.average(*np.transpose(told))) if told else math.nan
 
 
 def score(solution: Solution, recording: Recording) -> Scores:

@@ -1,0 +1,90 @@
+"""As many points as a screen can show: envelopes of series, simplified tracks."""
+
+from __future__ import annotations
+
+import heapq
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gapless.recording import Array
+
+
+def envelope(time: Array, columns: Array, points: int = 3000) -> tuple[Array, Array]:
+    """Smallest and largest value per bucket of rows, in the order in which they occur.
+
+    Parameters
+    ----------
+    time : ndarray, shape (n,)
+    columns : ndarray, shape (n, k)
+        NaN where unknown.
+    points : int
+        Most rows to return.
+
+    Returns
+    -------
+    time : ndarray, shape (m,)
+        Two of each bucket: of its first and of its middle row. All, if n <= points.
+    columns : ndarray, shape (m, k)
+        No extreme of any column is lost.
+    """
+    n = len(time)
+    if n <= points:
+        return time, columns
+    buckets = points // 2
+    edges = np.linspace(0, n, buckets + 1).astype(int)
+    width = int(np.diff(edges).max())
+    rows = np.minimum(edges[:-1, None] + np.arange(width), edges[1:, None] - 1)
+    block = columns[rows]
+    unknown = np.isnan(block)
+    low = np.where(unknown, np.inf, block).argmin(axis=1)
+    high = np.where(unknown, -np.inf, block).argmax(axis=1)
+    pair = np.stack([np.minimum(low, high), np.maximum(low, high)], axis=1)
+    found = np.take_along_axis(block, pair, axis=1).reshape(2 * buckets, -1)
+    middle = (edges[:-1] + edges[1:]) // 2
+    return time[np.column_stack([edges[:-1], middle]).ravel()], found
+
+
+def simplify(time: Array, xy: Array, points: int = 4000, tolerance: float = 0.1) -> NDArray[np.int64]:
+    """Rows of a track that draw it, and place it in time, as the whole would.
+
+    Top-down time-ratio simplification (Meratnia & de By 2004): the segment whose worst row lies
+    furthest from where a straight, even motion would have it is split there, until every row
+    is nearer than `tolerance` or the points are used up.
+
+    Parameters
+    ----------
+    time : ndarray, shape (n,)
+    xy : ndarray, shape (n, 2)
+        Finite [m].
+    points : int
+        Most rows to keep.
+    tolerance : float
+        [m]
+
+    Returns
+    -------
+    ndarray of int
+        Indices of the rows kept, increasing.
+    """
+    n = len(time)
+    if n <= 2:
+        return np.arange(n)
+
+    def worst(a: int, b: int) -> tuple[float, int, int, int]:
+        weight = ((time[a : b + 1] - time[a]) / (time[b] - time[a]))[:, None]
+        off = xy[a : b + 1] - (xy[a] + weight * (xy[b] - xy[a]))
+        far = np.hypot(off[:, 0], off[:, 1])
+        k = int(far.argmax())
+        return -float(far[k]), a + k, a, b
+
+    kept, queue = {0, n - 1}, [worst(0, n - 1)]
+    while queue and len(kept) < points:
+        far, middle, a, b = heapq.heappop(queue)
+        if -far <= tolerance:
+            break
+        kept.add(middle)
+        for pair in ((a, middle), (middle, b)):
+            if pair[1] - pair[0] > 1:
+                heapq.heappush(queue, worst(*pair))
+    return np.array(sorted(kept))

@@ -1,0 +1,300 @@
+"""What a run found, as one JSON-able dict and as lines for a terminal."""
+
+from __future__ import annotations
+
+import math
+import textwrap
+from collections.abc import Iterator, Mapping
+from dataclasses import fields
+from typing import Any
+
+import numpy as np
+
+from gapless import __version__
+from gapless.evaluation import Scores, consistency
+from gapless.evaluation.motion import horizontal_velocity, motion
+from gapless.recording import Trajectory
+from gapless.reports.numbers import distance, duration, measured, number, percent, plain
+from gapless.reports.quantities import state
+from gapless.solution import Decision, Innovations, Solution
+from gapless.units import DEG
+
+_ANGLES = ("roll_rmse", "pitch_rmse", "heading_rmse", "heading_max")
+_WIDTH = 80
+
+
+def summarise(solution: Solution, scores: Scores | None = None) -> dict[str, Any]:
+    """Everything worth keeping of a run besides its trajectory.
+
+    Parameters
+    ----------
+    solution : Solution
+    scores : Scores, optional
+
+    Returns
+    -------
+    dict
+        For `summary.json`: numbers, strings, lists and dicts; None where a number is not known.
+        Metres, seconds, m/s; angles in degrees, their keys end in "_deg"; states name their unit.
+    """
+    moved = travelled(solution.trajectory)
+    return {
+        "gapless": __version__,
+        "name": solution.name,
+        "system": solution.system,
+        "start": plain(solution.start),
+        "rows": len(solution.trajectory),
+        "duration": plain(span(solution.trajectory)),
+        "distance": plain(moved),
+        "position_sd": plain(typical_sd(solution)),
+        "decisions": [plain(one) for one in solution.decisions],
+        "states": {name: _final(solution, name) for name in solution.states},
+        "innovations": {name: plain(channel_statistics(c)) for name, c in solution.innovations.items()},
+        "scores": None if scores is None else _scores(scores),
+        "outages": _outages(solution, scores),
+        "notes": [plain(note) for note in solution.notes],
+    }
+
+
+def channel_statistics(channel: Innovations) -> dict[str, float | int]:
+    """How the innovations of one channel agree with their stated size.
+
+    Parameters
+    ----------
+    channel : Innovations
+
+    Returns
+    -------
+    dict
+        `count`, `dof`, `mean_nis` divided by dof with its 95 % band `lower`, `upper` for independent
+        innovations, `median_nis` divided by the median of its chi-square distribution, `within_95`
+        (share below the 95 % quantile), `inflated`, `rejected`.
+    """
+    dof = max(channel.z.shape[1], 1)
+    found = consistency(channel.nis, dof)
+    finite = channel.nis[np.isfinite(channel.nis)]
+    rejected = int(np.isinf(channel.factor).sum())
+    return {
+        "count": len(channel),
+        "dof": dof,
+        "mean_nis": found.mean / dof,
+        "lower": found.lower / dof,
+        "upper": found.upper / dof,
+        "median_nis": float(np.median(finite)) / _MEDIANS[min(dof, 6)] if len(finite) else math.nan,
+        "within_95": found.within,
+        "inflated": int((channel.factor > 1.0).sum()) - rejected,
+        "rejected": rejected,
+    }
+
+
+_MEDIANS = (math.nan, 0.454936, 1.386294, 2.365974, 3.356694, 4.351460, 5.348121)
+"""Median of the chi-square distribution with 0 to 6 degrees of freedom."""
+
+
+def travelled(trajectory: Trajectory) -> float:
+    """Distance travelled [m].
+
+    Parameters
+    ----------
+    trajectory : Trajectory
+
+    Returns
+    -------
+    float
+    """
+    if not len(trajectory):
+        return 0.0
+    velocity = horizontal_velocity(trajectory.time, trajectory.lla, trajectory.v_n)
+    return float(motion(trajectory.time, velocity).distance[-1])
+
+
+def span(trajectory: Trajectory) -> float:
+    """Seconds from the first row to the last.
+
+    Parameters
+    ----------
+    trajectory : Trajectory
+
+    Returns
+    -------
+    float
+    """
+    return float(trajectory.time[-1] - trajectory.time[0]) if len(trajectory) else 0.0
+
+
+def typical_sd(solution: Solution) -> float:
+    """Median horizontal standard deviation (root of both variances) outside outages [m].
+
+    Parameters
+    ----------
+    solution : Solution
+
+    Returns
+    -------
+    float
+        NaN where none is stated.
+    """
+    t = solution.trajectory
+    sd = np.hypot(t.sd[:, 0], t.sd[:, 1])[~solution.in_outage(t.time)]
+    sd = sd[np.isfinite(sd)]
+    return float(np.median(sd)) if len(sd) else math.nan
+
+
+def _final(solution: Solution, name: str) -> dict[str, Any]:
+    values, sds = solution.states[name], solution.states_sd.get(name)
+    shown = state(name, values.shape[1])
+    last = values[-1] if len(values) else np.full(values.shape[1], math.nan)
+    sd = sds[-1] if sds is not None and len(sds) else np.full(values.shape[1], math.nan)
+    return {
+        "unit": shown.unit,
+        "axes": list(shown.axes),
+        "value": plain(last / shown.scale),
+        "sd": plain(sd / shown.scale),
+    }
+
+
+def _degrees(record: Any) -> dict[str, Any]:
+    """Fields of a score with its angles in degrees."""
+    found = {}
+    for f in fields(record):
+        value = getattr(record, f.name)
+        angle = f.name in _ANGLES
+        found[f.name + "_deg" * angle] = plain(value / DEG if angle else value)
+    return found
+
+
+def _scores(scores: Scores) -> dict[str, Any]:
+    return {
+        "truth": scores.truth,
+        "statement": scores.statement,
+        "clock_offset": plain(scores.clock_offset),
+        "height_offset": plain(scores.height_offset),
+        "aided": _degrees(scores.aided),
+        "fixes_horizontal_rmse": plain(scores.fixes_rmse),
+        "outages": len(scores.outages),
+        "outages_apart": len(scores.outages) - len(scores.pool),
+        "horizontal_max": plain(scores.horizontal),
+        "coverage_95": plain(scores.coverage),
+    }
+
+
+def _outages(solution: Solution, scores: Scores | None) -> list[dict[str, Any]]:
+    if scores is None:
+        return [{"start": plain(a), "end": plain(b)} for a, b in solution.outages]
+    return [_degrees(one) for one in scores.outages]
+
+
+def decision_value(decision: Decision) -> str:
+    """The value of a decision with its unit, and its standard deviation where there is one.
+
+    Parameters
+    ----------
+    decision : Decision
+
+    Returns
+    -------
+    str
+    """
+    value = decision.value
+    if isinstance(value, str):
+        return f"{value} {decision.unit}".strip()
+    if isinstance(value, tuple):
+        text = ", ".join(number(one, "", 4) for one in value)
+        sd = f" ± {number(decision.sd, '', 2)}" if decision.sd is not None else ""
+        return f"{text}{sd}" + (f"\u00a0{decision.unit}" if decision.unit else "")
+    return measured(float(value), decision.sd, decision.unit)
+
+
+def summary_lines(summary: Mapping[str, Any]) -> list[str]:
+    """A summary for the terminal.
+
+    Parameters
+    ----------
+    summary : mapping
+        As `summarise` returns it, or as it comes back from JSON.
+
+    Returns
+    -------
+    list of str
+        At most 80 columns wide.
+    """
+    lines = [f"{summary['name']} · {summary['system']} · gapless {summary['gapless']}"]
+    lines.append(f"{duration(summary['duration'])}, {distance(summary['distance'])}")
+    for title, part in (
+        ("Decisions", _decision_lines),
+        ("States at the end", _state_lines),
+        ("Innovations", _innovation_lines),
+        ("Accuracy", _score_lines),
+        ("Outages", _outage_lines),
+        ("Noticed", _note_lines),
+    ):
+        found = list(part(summary))
+        if found:
+            lines += ["", title, *found]
+    wrapped = (textwrap.wrap(line, _WIDTH, subsequent_indent=" " * 6) or [""] for line in lines)
+    return [line.replace("\u00a0", " ") for part in wrapped for line in part]
+
+
+def _known(value: float | None) -> float:
+    return math.nan if value is None else value
+
+
+def _decision_lines(summary: Mapping[str, Any]) -> Iterator[str]:
+    for one in summary["decisions"]:
+        value = tuple(map(_known, one["value"])) if isinstance(one["value"], list) else one["value"]
+        decision = Decision(**{**one, "value": math.nan if value is None else value})
+        yield f"  {one['name']}: {decision_value(decision)} ({one['source']}: {one['evidence']})"
+
+
+def _state_lines(summary: Mapping[str, Any]) -> Iterator[str]:
+    for name, one in summary["states"].items():
+        parts = (measured(_known(v), _known(sd)) for v, sd in zip(one["value"], one["sd"], strict=True))
+        yield f"  {name.replace('_', ' ')}: {', '.join(parts)} {one['unit']}".rstrip()
+
+
+def _innovation_lines(summary: Mapping[str, Any]) -> Iterator[str]:
+    if summary["innovations"]:
+        yield f"  {'channel':<16}{'count':>8}{'NIS/dof':>9}{'in 95 %':>9}{'inflated':>10}{'rejected':>10}"
+    for name, c in summary["innovations"].items():
+        nis, share = number(_known(c["mean_nis"])), percent(_known(c["within_95"]))
+        yield f"  {name:<16}{c['count']:>8}{nis:>9}{share:>9}{c['inflated']:>10}{c['rejected']:>10}"
+
+
+def _score_lines(summary: Mapping[str, Any]) -> Iterator[str]:
+    scores = summary["scores"]
+    if scores is None:
+        return
+    aided = scores["aided"]
+    yield f"  truth: {scores['statement']}"
+    if scores["truth"] == "reference":
+        line = f"  horizontal {number(_known(aided['horizontal_rmse']), 'm')} RMS outside outages"
+        yield line + f" (raw fixes {number(_known(scores['fixes_horizontal_rmse']), 'm')})"
+        angles = [_known(aided[f"{a}_rmse_deg"]) for a in ("roll", "pitch", "heading")]
+        if np.isfinite(angles).any():
+            yield f"  roll, pitch, heading {', '.join(map(number, angles))} deg RMS"
+    if scores["height_offset"] is not None:
+        yield f"  height {number(scores['height_offset'], 'm')} above the truth, taken off"
+
+
+def _outage_lines(summary: Mapping[str, Any]) -> Iterator[str]:
+    scores = summary["scores"]
+    if scores is None or not summary["outages"]:
+        return
+    yield f"  {'start:end s':<14}{'largest':>9}{'at end':>9}{'travelled':>11}{'heading':>9}  "
+    for o in summary["outages"]:
+        cells = [number(_known(o[key]), "m") for key in ("horizontal_max", "horizontal_end")]
+        heading = number(_known(o["heading_max_deg"]), "deg", 2)
+        line = f"  {o['start']:g}:{o['end']:g}".ljust(16) + f"{cells[0]:>9}{cells[1]:>9}"
+        yield (line + f"{distance(o['distance']):>11}{heading:>9}  {', '.join(o['labels'])}").rstrip()
+    s = scores["horizontal_max"]
+    if s["count"]:
+        median, p90, root, worst = (number(s[key], "m") for key in ("median", "p90", "rms", "worst"))
+        yield f"  largest error over {s['count']}: median {median}, P90 {p90}, RMS {root}, worst {worst}"
+    if scores["outages_apart"]:
+        yield f"  {scores['outages_apart']} of {scores['outages']} left out of these figures"
+
+
+def _note_lines(summary: Mapping[str, Any]) -> Iterator[str]:
+    for note in summary["notes"]:
+        times = f" ({note['count']})" if note["count"] else ""
+        yield f"  {note['where']}: {note['what']}{times}"
