@@ -1,0 +1,78 @@
+"""Do a receiver's velocities and positions tell of the same drive? Units, order, signs."""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+
+from gapless.earth import radii
+from gapless.io.log import Log
+from gapless.recording import Array, Gnss
+
+_SPAN: Final = 10.0
+"""Seconds over which displacements are compared: long against the noise of a fix."""
+_FAR: Final = 30.0
+"""Displacement [m] from which on a pair is compared: ten times a single point's noise."""
+_ENOUGH: Final = 30
+"""Pairs below which nothing is concluded."""
+_UNITS: Final = {3.6: "km/h", 1 / 0.514444: "knots", 1 / 0.3048: "ft/s", 100.0: "cm/s", 1000.0: "mm/s"}
+
+
+def check_velocity(log: Log, gnss: Gnss) -> None:
+    """Refuse a log whose velocities contradict its positions.
+
+    Medians over pairs of fixes ten seconds apart decide, so outliers do not.
+
+    Parameters
+    ----------
+    log : Log
+        For the error.
+    gnss : Gnss
+
+    Raises
+    ------
+    RecordingError
+        If the velocity's integral is not along the displacement or not as long.
+    """
+    ahead, moved = _displacements(gnss)
+    size_v, size_p = np.hypot(*ahead.T), np.hypot(*moved.T)
+    if len(ahead) >= _ENOUGH and np.mean((size_v > _FAR) & (size_p < 0.03 * size_v)) > 0.2:
+        log.refuse(
+            "the velocity moves, the positions hardly do", "lat and lon may be in radians: log degrees"
+        )
+    far = np.minimum(size_v, size_p) > _FAR
+    if far.sum() < _ENOUGH:
+        return
+    ahead, moved, size_v, size_p = ahead[far], moved[far], size_v[far], size_p[far]
+    along = float(np.median((ahead * moved).sum(axis=1) / (size_v * size_p)))
+    crossed = float(np.median((ahead[:, ::-1] * moved).sum(axis=1) / (size_v * size_p)))
+    ratio = float(np.median(size_v / size_p))
+    if along < 0.7:
+        cure = "check the signs and order of v_north and v_east"
+        if crossed > 0.7:
+            cure = "v_north and v_east, or lat and lon, look exchanged: swap them"
+        log.refuse(f"velocity does not point along the track (median cosine {along:.2f})", cure)
+    if not 0.7 < ratio < 1.4:
+        unit = next((u for x, u in _UNITS.items() if abs(ratio / x - 1.0) < 0.08), None)
+        cure = f"it looks like {unit}" if unit else "check its unit"
+        log.refuse(f"velocity is {ratio:.3g} times what the positions show", f"{cure}: log deg and m/s")
+
+
+def _displacements(gnss: Gnss) -> tuple[Array, Array]:
+    """North and east [m] over about ten seconds, by velocity and by position."""
+    known = np.isfinite(gnss.lla).all(axis=1) & np.isfinite(gnss.v_n).all(axis=1)
+    t, lla, v = gnss.time[known], gnss.lla[known], gnss.v_n[known, :2]
+    first = np.arange(len(t))
+    last = np.searchsorted(t, t + _SPAN)
+    first, last = first[last < len(t)], last[last < len(t)]
+    near = t[last] - t[first] < 1.2 * _SPAN
+    first, last = first[near], last[near]
+    path = np.zeros_like(v)
+    path[1:] = np.cumsum(0.5 * (v[1:] + v[:-1]) * np.diff(t)[:, None], axis=0)
+    r_m, r_n = radii(np.sin(lla[:, 0]))
+    ahead = path[last] - path[first]
+    moved = lla[last, :2] - lla[first, :2]
+    moved[:, 0] *= r_m[first]
+    moved[:, 1] *= (r_n * np.cos(lla[:, 0]))[first]
+    return ahead, moved

@@ -1,0 +1,49 @@
+"""Solution as GeoJSON (RFC 7946)."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+from gapless.io.writers.atomic import atomic
+from gapless.io.writers.table import runs, solution_columns
+from gapless.solution import Solution
+
+
+def write_geojson(solution: Solution, path: Path) -> None:
+    """Write one line per stretch of one source.
+
+    Each feature says its `source`, `start` and `end` [s, IMU clock], whether it lies in a withheld
+    `outage`, and `sd_horizontal_end` [m], the larger horizontal standard deviation at its end.
+
+    Parameters
+    ----------
+    solution : Solution
+    path : Path
+    """
+    features = [_feature(solution, source, rows) for source, rows in runs(solution)]
+    collection = {"type": "FeatureCollection", "name": solution.name, "features": features}
+    with atomic(path) as temporary:
+        temporary.write_text(json.dumps(collection, allow_nan=False), "utf-8")
+
+
+def _feature(solution: Solution, source: str, rows: slice) -> dict[str, Any]:
+    columns = solution_columns(solution)
+    time = columns["time"][rows]
+    points = zip(*(columns[name][rows].round(9).tolist() for name in ("lon", "lat", "height")), strict=True)
+    coordinates = [[lon, lat, round(height, 3)] for lon, lat, height in points]
+    if len(coordinates) == 1:  # a line has two points or more
+        coordinates *= 2
+    sd = float(max(columns["sd_north"][rows][-1], columns["sd_east"][rows][-1]))
+    return {
+        "type": "Feature",
+        "geometry": {"type": "LineString", "coordinates": coordinates},
+        "properties": {
+            "source": source,
+            "start": float(time[0]),
+            "end": float(time[-1]),
+            "outage": bool(solution.in_outage(time[-1:])[0]),
+            "sd_horizontal_end": round(sd, 3) if sd == sd else None,
+        },
+    }
