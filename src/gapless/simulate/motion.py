@@ -77,6 +77,11 @@ def _cross(a: Array, b: Array) -> Array:
     return np.stack([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]])
 
 
+def _everywhere(vector: Triple, like: Array) -> Array:
+    """One vector at every time of an array of vectors."""
+    return np.broadcast_to(np.array(vector).reshape(3, *(1,) * (like.ndim - 1)), like.shape)
+
+
 def _into_body(c_nb: Array, x_n: Array) -> Array:
     return np.asarray(np.einsum("ij...,i...->j...", c_nb, x_n))
 
@@ -123,6 +128,10 @@ def _motion(path: Path, t: Array) -> _Motion:
     r_m, r_n = earth.radii(sin_lat)
     v_n, dv_n = speed * c_nc[:, 0], _into_level(c_nc, dv_c)
     where = (sin_lat / cos_lat, r_m + lla[2], r_n + lla[2])
+    w_en = np.stack(earth.transport_rate(v_n[0], v_n[1], *where))
+    dw_en = np.stack(earth.transport_rate(dv_n[0], dv_n[1], *where))
+    # the tangent of the latitude changes too; that the radii do weighs 1e-12 rad/s^2 times a lever arm
+    dw_en[2] += w_en[0] * w_en[1] / cos_lat**2
     return _Motion(
         c_nc,
         lla,
@@ -131,9 +140,8 @@ def _motion(path: Path, t: Array) -> _Motion:
         w_nc,
         dw_nc,
         np.stack([earth.RATE * cos_lat, zero, -earth.RATE * sin_lat]),
-        np.stack(earth.transport_rate(v_n[0], v_n[1], *where)),
-        # terms of order v^2 / R^2 are left out: they weigh 1e-10 rad/s^2 times a lever arm
-        np.stack(earth.transport_rate(dv_n[0], dv_n[1], *where)),
+        w_en,
+        dw_en,
     )
 
 
@@ -176,8 +184,8 @@ def rates(path: Path, t: Any, vehicle: Vehicle = AT_AXLE) -> tuple[Array, Array]
     w_in = w_ie + w_en
     w_ib = m.w_nc + w_in
     dw_in = _into_body(m.c_nc, m.dw_en_n - _cross(m.w_en_n, m.w_ie_n)) - _cross(m.w_nc, w_in)
-    lever = np.array(vehicle.imu).reshape(3, *(1,) * (m.v_c.ndim - 1))
-    gravity = _into_body(m.c_nc, _gravity(m, _into_level(m.c_nc, lever + 0.0 * m.v_c)))
+    lever = _everywhere(vehicle.imu, m.v_c)
+    gravity = _into_body(m.c_nc, _gravity(m, _into_level(m.c_nc, lever)))
     f = m.dv_c + _cross(w_ie + w_in, m.v_c) - gravity
     f += (
         _cross(m.dw_nc + dw_in, lever) + _cross(w_ib, _cross(w_ib, lever)) - _cross(w_ie, _cross(w_ie, lever))
@@ -236,7 +244,7 @@ def point(path: Path, t: Array, lever: Triple) -> tuple[Array, Array, Array]:
         Car to the point's local level axes.
     """
     m = _motion(path, np.asarray(t, float))
-    arm = np.array(lever)[:, None] + np.zeros_like(m.v_c)
+    arm = _everywhere(lever, m.v_c)
     d = _into_level(m.c_nc, arm)
     w_ec = m.w_nc + _into_body(m.c_nc, m.w_en_n)
     tilt = _tilt(m, d)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
@@ -38,7 +39,7 @@ def fit(segments: Sequence[Segment], duration: float) -> tuple[Segment, ...]:
     for s in segments:
         if left <= 1e-9:
             break
-        kept.append(Segment(min(s.duration, left), s.acceleration, s.turn_rate, s.slope, s.bank))
+        kept.append(replace(s, duration=min(s.duration, left)))
         left -= s.duration
     return tuple(kept)
 

@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 from numpy.testing import assert_allclose
 
@@ -45,7 +47,7 @@ def test_an_early_stamp_is_a_negative_delay():
 
 def test_averaged_velocity_is_displacement_over_the_window():
     window = 1.0
-    gnss = fixes(PATH, Receiver(ZERO and 1.0, ZERO, ZERO, 60.0, ZERO, velocity_window=window), rng(), CAR)
+    gnss = fixes(PATH, replace(EXACT, velocity_window=window), rng(), CAR)
     end, _, _ = point(PATH, gnss.time, CAR.antenna)
     start, _, _ = point(PATH, gnss.time - window, CAR.antenna)
     # eight nodes over corners of 1 s: 1e-5; radii along 17 m: (17 m / 6.4e6 m) of 17 m/s is 5e-5
