@@ -97,8 +97,9 @@ class Scores:
     @property
     def coverage(self) -> float:
         """Share of the pool's truth epochs that the stated 95 % ellipses hold; NaN without any."""
-        told = [(o.coverage, o.truth_epochs) for o in self.pool if not math.isnan(o.coverage)]
-        return float(np.average(*np.transpose(told))) if told else math.nan
+        told = [o for o in self.pool if not math.isnan(o.coverage)]
+        epochs = sum(o.truth_epochs for o in told)
+        return sum(o.coverage * o.truth_epochs for o in told) / epochs if epochs else math.nan
 
 
 def score(solution: Solution, recording: Recording) -> Scores:

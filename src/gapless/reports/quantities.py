@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from gapless.units import DEG, MILLI_G, PPM
 
@@ -45,16 +45,17 @@ STATES = {
 }
 """Blocks of the error-state layout."""
 
+_RATE = Quantity("Zero angular rate", "deg/s", DEG, _BODY)
 CHANNELS = {
-    "position": Quantity("Position", "m", 1.0, _NED),
-    "velocity": Quantity("Velocity", "m/s", 1.0, _NED),
-    "nonholonomic": Quantity("Non-holonomic", "m/s", 1.0, ("right", "down")),
-    "zero_velocity": Quantity("Zero velocity", "m/s", 1.0, _NED),
-    "zero_rate": Quantity("Zero angular rate", "deg/s", DEG, _BODY),
-    "odometer": Quantity("Odometer", "m/s", 1.0, ("forward",)),
-    "heading": Quantity("Heading", "deg", DEG, ("heading",)),
+    "position": (Quantity("Position", "m", 1.0, _NED),),
+    "velocity": (Quantity("Velocity", "m/s", 1.0, _NED),),
+    "nonholonomic": (Quantity("Non-holonomic", "m/s", 1.0, ("right", "down")),),
+    "zero_velocity": (Quantity("Zero velocity", "m/s", 1.0, _NED), _RATE),
+    "zero_rate": (_RATE,),
+    "odometer": (Quantity("Odometer", "m/s", 1.0, ("forward",)),),
+    "heading": (Quantity("Heading", "deg", DEG, ("heading",)),),
 }
-"""Kinds of observation."""
+"""Kinds of observation; one that mixes units is shown in parts."""
 
 
 def state(name: str, size: int) -> Quantity:
@@ -72,10 +73,11 @@ def state(name: str, size: int) -> Quantity:
     Quantity
         With exactly `size` axes.
     """
-    return _fitted(STATES.get(name), name, size)
+    found = STATES.get(name, Quantity(_words(name), "", 1.0, ()))
+    return found if len(found.axes) == size else replace(found, axes=_numbered(size))
 
 
-def channel(name: str, size: int) -> Quantity:
+def channel(name: str, size: int) -> tuple[Quantity, ...]:
     """How the innovations of a channel are shown.
 
     Parameters
@@ -87,13 +89,19 @@ def channel(name: str, size: int) -> Quantity:
 
     Returns
     -------
-    Quantity
-        With exactly `size` axes.
+    tuple of Quantity
+        In the order of the components; `size` axes altogether, or those of the first part alone.
     """
-    return _fitted(CHANNELS.get(name), name, size)
+    parts = CHANNELS.get(name, (Quantity(_words(name), "", 1.0, _numbered(size)),))
+    if sum(len(part.axes) for part in parts) == size:
+        return parts
+    first = parts[0]
+    return (first if len(first.axes) == size else replace(first, axes=_numbered(size)),)
 
 
-def _fitted(known: Quantity | None, name: str, size: int) -> Quantity:
-    found = known or Quantity(name.replace("_", " ").capitalize(), "", 1.0, ())
-    axes = found.axes if len(found.axes) == size else tuple(str(k + 1) for k in range(size))
-    return Quantity(found.label, found.unit, found.scale, axes)
+def _numbered(size: int) -> tuple[str, ...]:
+    return tuple(str(k + 1) for k in range(size))
+
+
+def _words(name: str) -> str:
+    return name.replace("_", " ").capitalize()

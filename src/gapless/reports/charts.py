@@ -1,0 +1,221 @@
+"""The charts of the page: which series, in which unit, over which range."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+import numpy as np
+
+from gapless.evaluation import Scores
+from gapless.recording import Array
+from gapless.reports.decimate import envelope
+from gapless.reports.quantities import Quantity, channel, state
+from gapless.solution import Innovations, Solution
+from gapless.units import DEG
+
+Range = tuple[float, float]
+_DIGITS = 4
+"""Significant digits kept of what a chart shows."""
+
+
+def charts(solution: Solution, scores: Scores | None) -> list[dict[str, Any]]:
+    """Every chart, in the order of the page.
+
+    Parameters
+    ----------
+    solution : Solution
+    scores : Scores, optional
+
+    Returns
+    -------
+    list of dict
+        JSON-able: `group`, `title`, `unit`, `range`, `log`, `dots`, `gap` (longest step that a line
+        may cross, s), `t`, and `series`, each with `name`, `y` and, if it has one, half a `band`.
+    """
+    found: list[dict[str, Any]] = []
+    if scores is not None and np.isfinite(scores.errors.horizontal).any():
+        found += _error_charts(scores, solution.start)
+    found += _motion_charts(solution)
+    found += _sd_charts(solution)
+    for name, values in solution.states.items():
+        found.append(_state_chart(solution, name, values))
+    for name, one in solution.innovations.items():
+        if len(one):
+            found += _innovation_charts(name, one, solution.start)
+    return found
+
+
+def _chart(
+    group: str,
+    title: str,
+    unit: str,
+    time: Array,
+    series: Sequence[tuple[str, Array]],
+    bands: Array | None = None,
+    **more: Any,
+) -> dict[str, Any]:
+    """One chart; `bands` are half widths, shape (n, len(series))."""
+    columns = np.column_stack([y for _, y in series])
+    table = columns if bands is None else np.column_stack([columns, bands])
+    t, table = envelope(time, table)
+    k = len(series)
+    drawn: list[dict[str, Any]] = [
+        {"name": name, "y": significant(table[:, i])} for i, (name, _) in enumerate(series)
+    ]
+    if bands is not None:
+        for i, one in enumerate(drawn):
+            one["band"] = significant(table[:, k + i])
+    step = float(np.median(np.diff(time))) if len(time) > 1 else 1.0
+    bucket = step * max(1.0, len(time) / len(t)) if len(t) else step
+    return {
+        "group": group,
+        "title": title,
+        "unit": unit,
+        "range": list(more.pop("range", None) or extent(columns, bands)),
+        "log": False,
+        "dots": False,
+        "gap": round(max(2.0, 4.0 * bucket), 2),
+        "t": np.round(t, 2).tolist(),
+        "series": drawn,
+        **more,
+    }
+
+
+def significant(values: Array) -> list[float | None]:
+    """Values with four significant digits, none of them finer than the chart can show.
+
+    Parameters
+    ----------
+    values : ndarray, shape (n,)
+
+    Returns
+    -------
+    list
+        None where a value is not finite.
+    """
+    known = np.isfinite(values)
+    size = np.abs(values[known])
+    top = float(np.percentile(size, 99)) if len(size) else 0.0
+    decimals = _DIGITS - 1 - int(np.floor(np.log10(top))) if top > 0.0 else 0
+    decimals = min(max(decimals, 0), 9)
+    short = np.round(np.where(known, values, 0.0), decimals).tolist()
+    whole = decimals == 0
+    return [(int(v) if whole else v) if ok else None for v, ok in zip(short, known.tolist(), strict=True)]
+
+
+def extent(columns: Array, bands: Array | None = None) -> Range:
+    """Range that shows all but what would flatten the rest.
+
+    Parameters
+    ----------
+    columns : ndarray, shape (n, k)
+    bands : ndarray, shape (n, k), optional
+        Half widths; their median belongs into the range.
+
+    Returns
+    -------
+    low, high : float
+    """
+    x = columns[np.isfinite(columns)]
+    if not len(x):
+        return 0.0, 1.0
+    low, high = float(x.min()), float(x.max())
+    a, b = (float(q) for q in np.percentile(x, [0.2, 99.8]))
+    room = max(b - a, 1e-12)
+    if high - low > 3.0 * room:
+        low, high = max(low, a - 0.5 * room), min(high, b + 0.5 * room)
+    if bands is not None and np.isfinite(bands).any():
+        half = np.nanmedian(bands, axis=0)
+        middle = np.nanmedian(columns, axis=0)
+        low, high = min(low, float(np.nanmin(middle - half))), max(high, float(np.nanmax(middle + half)))
+    pad = 0.06 * (high - low) or 0.5 * abs(high) or 1.0
+    return low - pad, high + pad
+
+
+def _error_charts(scores: Scores, start: float) -> Iterator[dict[str, Any]]:
+    e = scores.errors
+    t, size, bound = e.time - start, e.horizontal, e.bound()
+    title = "Horizontal error" if scores.truth == "reference" else "Horizontal distance to the fixes"
+    worst = float(np.nanmax(size))
+    top = worst if not np.isfinite(bound).any() else max(worst, min(float(np.nanmax(bound)), 2.0 * worst))
+    yield _chart(
+        "Errors",
+        title,
+        "m",
+        t,
+        [(title.split(" ")[1], size), ("95 % bound", bound)],
+        range=(0.0, 1.06 * top or 1.0),
+        area=1,
+        wide=True,
+        note="The shaded area is the error that the filter itself expects: the line should stay "
+        "in it 95 % of the time.",
+    )
+    if np.isfinite(e.along).any():
+        yield _chart(
+            "Errors", "Along and across the course", "m", t, [("along", e.along), ("cross", e.cross)]
+        )
+    down = -e.position[:, 2] - (scores.height_offset if np.isfinite(scores.height_offset) else 0.0)
+    yield _chart("Errors", "Height error", "m", t, [("up", down)])
+    if np.isfinite(e.attitude).any():
+        names = ("roll", "pitch", "heading")
+        series = [(name, e.attitude[:, k] / DEG) for k, name in enumerate(names)]
+        yield _chart("Errors", "Attitude error", "deg", t, series)
+    if np.isfinite(e.velocity[:, :2]).any():
+        series = [(name, e.velocity[:, k]) for k, name in enumerate(("north", "east"))]
+        yield _chart("Errors", "Velocity error", "m/s", t, series)
+
+
+def _motion_charts(solution: Solution) -> Iterator[dict[str, Any]]:
+    t = solution.trajectory
+    time = t.time - solution.start
+    speed = np.hypot(t.v_n[:, 0], t.v_n[:, 1])
+    yield _chart("Motion", "Speed", "m/s", time, [("speed", speed)])
+    heading = np.where(np.isfinite(t.euler[:, 2]), t.euler[:, 2] / DEG % 360.0, np.nan)
+    yield _chart("Motion", "Heading", "deg", time, [("heading", heading)], range=(0.0, 360.0), wrap=360.0)
+    tilt = [("roll", t.euler[:, 0] / DEG), ("pitch", t.euler[:, 1] / DEG)]
+    yield _chart("Motion", "Roll and pitch", "deg", time, tilt)
+
+
+def _sd_charts(solution: Solution) -> Iterator[dict[str, Any]]:
+    t = solution.trajectory
+    time = t.time - solution.start
+    parts = (
+        ("Position", "m", 0, 1.0, ("north", "east", "down")),
+        ("Velocity", "m/s", 3, 1.0, ("north", "east", "down")),
+        ("Attitude", "deg", 6, DEG, ("roll", "pitch", "heading")),
+    )
+    for title, unit, first, scale, names in parts:
+        sd = np.where(t.sd[:, first : first + 3] > 0.0, t.sd[:, first : first + 3] / scale, np.nan)
+        known = sd[np.isfinite(sd)]
+        if len(known):
+            limits = (0.8 * float(known.min()), 1.25 * float(known.max()))
+            series = [(name, sd[:, k]) for k, name in enumerate(names)]
+            yield _chart("Standard deviations", title, unit, time, series, range=limits, log=True)
+
+
+def _state_chart(solution: Solution, name: str, values: Array) -> dict[str, Any]:
+    shown = state(name, values.shape[1])
+    sd = solution.states_sd.get(name)
+    series = [(axis, values[:, k] / shown.scale) for k, axis in enumerate(shown.axes)]
+    bands = None if sd is None else sd / shown.scale
+    time = solution.trajectory.time - solution.start
+    return _chart("States", shown.label, shown.unit, time, series, bands)
+
+
+def _innovation_charts(name: str, one: Innovations, start: float) -> Iterator[dict[str, Any]]:
+    first = 0
+    for part in channel(name, one.z.shape[1]):
+        columns = slice(first, first + len(part.axes))
+        first = columns.stop
+        yield _innovation_chart(part, one.time - start, one.z[:, columns], one.sd[:, columns], one.factor)
+
+
+def _innovation_chart(part: Quantity, time: Array, z: Array, sd: Array, factor: Array) -> dict[str, Any]:
+    z, sd = z / part.scale, sd / part.scale
+    used = np.abs(z[np.isfinite(factor)])
+    used = used[np.isfinite(used)]
+    typical = float(np.nanmedian(sd)) if np.isfinite(sd).any() else 1.0
+    half = 1.1 * max(3.0 * typical, float(np.percentile(used, 99.5)) if len(used) else 0.0)
+    series = [(axis, z[:, k]) for k, axis in enumerate(part.axes)]
+    return _chart("Innovations", part.label, part.unit, time, series, sd, range=(-half, half), dots=True)

@@ -1,0 +1,147 @@
+"""What the page draws, decimated to what a screen shows: the track and the charts over time.
+
+Times are seconds after the first IMU sample, the track is in metres east and north of its middle.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from gapless.evaluation import Scores, chi_square_quantile
+from gapless.evaluation.errors import gnss_truth
+from gapless.evaluation.motion import offset_ned
+from gapless.recording import Array, Recording, Trajectory
+from gapless.reports.charts import charts
+from gapless.reports.decimate import simplify
+from gapless.scenarios import Outage, withheld
+from gapless.solution import Solution
+
+_ELLIPSES = 24
+"""Ellipses drawn along one outage."""
+_FIXES = 3000
+_COASTING = 3.0
+"""Stretches without GNSS shorter than this [s] are the rhythm of the receiver, not an outage."""
+
+
+def payload(solution: Solution, recording: Recording, scores: Scores | None) -> dict[str, Any]:
+    """Data of the page's scripts.
+
+    Parameters
+    ----------
+    solution : Solution
+    recording : Recording
+    scores : Scores, optional
+
+    Returns
+    -------
+    dict
+        JSON-able; arrays are lists of rounded numbers, None where unknown.
+    """
+    end = float(solution.trajectory.time[-1]) - solution.start
+    return {
+        "span": [rounded(solution.trajectory.time[:1] - solution.start, 2)[0], round(end, 2)],
+        "outages": [[round(a, 3), round(b, 3)] for a, b in solution.outages],
+        "track": _track(solution, recording, scores),
+        "charts": charts(solution, scores),
+    }
+
+
+def rounded(values: Array, decimals: int) -> list[float | None]:
+    """A list for JSON.
+
+    Parameters
+    ----------
+    values : ndarray, shape (n,)
+    decimals : int
+
+    Returns
+    -------
+    list
+        None where a value is not finite.
+    """
+    known = np.isfinite(values)
+    short = np.round(np.where(known, values, 0.0), decimals).tolist()
+    return [value if ok else None for value, ok in zip(short, known.tolist(), strict=True)]
+
+
+def _track(solution: Solution, recording: Recording, scores: Scores | None) -> dict[str, Any]:
+    t = solution.trajectory
+    start = solution.start
+    origin = t.lla[len(t) // 2]
+    track = _path(t, origin, start)
+    stretches = [(a - start, b - start) for a, b in coasting(solution)]
+    offset = 0.0 if scores is None else scores.clock_offset
+    fixes = gnss_truth(recording.gnss)
+    chosen = fixes.take(
+        np.unique(np.linspace(0, len(fixes) - 1, _FIXES).astype(int)) if len(fixes) else slice(0)
+    )
+    away = withheld(chosen.time, [Outage(a, b) for a, b in solution.outages], start)
+    reference = recording.reference
+    return {
+        **track,
+        "coasting": [[round(a, 2), round(b, 2)] for a, b in stretches],
+        "fixes": [_path(chosen.take(m), origin, start, whole=True) for m in (~away, away)],
+        "reference": None if reference is None else _path(reference, origin, start - offset),
+        "ellipses": _ellipses(solution, origin),
+    }
+
+
+def _xy(lla: Array, origin: Array) -> Array:
+    return offset_ned(lla, np.broadcast_to(origin, lla.shape))[:, 1::-1]
+
+
+def _path(t: Trajectory, origin: Array, start: float, whole: bool = False) -> dict[str, Any]:
+    t = t.take(np.isfinite(t.lla[:, :2]).all(axis=1))
+    xy = _xy(t.lla, origin)
+    if not whole:
+        rows = simplify(t.time, xy)
+        t, xy = t.take(rows), xy[rows]
+    return {
+        "t": rounded(t.time - start, 2),
+        "x": rounded(xy[:, 0], 2),
+        "y": rounded(xy[:, 1], 2),
+    }
+
+
+def coasting(solution: Solution) -> list[tuple[float, float]]:
+    """Stretches that the solution spent without GNSS, whoever took it away.
+
+    Parameters
+    ----------
+    solution : Solution
+
+    Returns
+    -------
+    list of (float, float)
+        IMU times [s] of runs of 3 s or more.
+    """
+    t = solution.trajectory
+    alone = (t.source != "gnss") | solution.in_outage(t.time)
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], alone, [False]]).astype(int)))
+    runs = ((float(t.time[a]), float(t.time[b - 1])) for a, b in edges.reshape(-1, 2))
+    return [(a, b) for a, b in runs if b - a >= _COASTING]
+
+
+def _ellipses(solution: Solution, origin: Array) -> list[list[float | None]]:
+    """Rows of t, x, y, semi-major axis, semi-minor axis, direction of the major axis from east."""
+    t = solution.trajectory
+    rows = []
+    for a, b in solution.outages:
+        lo, hi = np.searchsorted(t.time - solution.start, [a, b])
+        if hi > lo:
+            rows.append(np.unique(np.linspace(lo, hi - 1, _ELLIPSES).astype(int)))
+    if not rows:
+        return []
+    chosen = t.take(np.concatenate(rows))
+    chosen = chosen.take(np.isfinite(chosen.sd[:, :2]).all(axis=1) & np.isfinite(chosen.horizontal))
+    covariance = np.empty((len(chosen), 2, 2))
+    covariance[:, 0, 0], covariance[:, 1, 1] = chosen.sd[:, 1] ** 2, chosen.sd[:, 0] ** 2
+    covariance[:, 0, 1] = covariance[:, 1, 0] = chosen.horizontal
+    size, direction = np.linalg.eigh(covariance)
+    axes = np.sqrt(chi_square_quantile(0.95, 2) * np.maximum(size[:, ::-1], 0.0))
+    angle = np.arctan2(direction[:, 1, 1], direction[:, 0, 1])
+    xy = _xy(chosen.lla, origin)
+    table = np.column_stack([chosen.time - solution.start, xy, axes, angle])
+    return [rounded(row, 3) for row in table]
