@@ -88,15 +88,15 @@ def _check_overlap(imu: Log, gnss: Log, samples: Array, fixes: Array) -> None:
     if inside >= 2:
         return
     cure = "put both on one clock, or check that they are of one trip"
+    weeks = round((b0 - a0) / 604800.0)
+    if weeks and abs(b0 - a0 - 604800.0 * weeks) < 0.5 * 604800.0 and min(a0, b0) < 604800.0 < max(a0, b0):
+        cure = "one counts from the start of the GPS week, the other does not: put both on one clock"
     scale = (b1 - b0) / (a1 - a0)
     for unit, factor in (("milliseconds", 1e3), ("microseconds", 1e6), ("nanoseconds", 1e9)):
         if 0.3 * factor < scale < 3.0 * factor:
             cure = f"GNSS time looks like {unit}: log seconds"
         if 0.3 / factor < scale < 3.0 / factor:
             cure = f"IMU time looks like {unit}: log seconds"
-    weeks = round((b0 - a0) / 604800.0)
-    if weeks and abs(b0 - a0 - 604800.0 * weeks) < 0.5 * 604800.0 and min(a0, b0) < 604800.0 < max(a0, b0):
-        cure = "one counts from the start of the GPS week, the other does not: put both on one clock"
     gnss.refuse(
         f"{b0:.3f} to {b1:.3f} s does not overlap the IMU's {a0:.3f} to {a1:.3f} s ({imu.where})", cure
     )

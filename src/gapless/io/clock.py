@@ -40,7 +40,7 @@ def nominal_interval(time: Array) -> float:
     middle = float(np.median(step))
     if step.min() >= 0.5 * middle > 0.0:
         return middle
-    largest = max(5.0 * middle, 5.0 * float(step.mean()))
+    largest = 10.0 * max(middle, float(step.mean()))
     return float(step[step <= largest].mean())
 
 

@@ -63,6 +63,8 @@ def _displacements(gnss: Gnss) -> tuple[Array, Array]:
     """North and east [m] over about ten seconds, by velocity and by position."""
     known = np.isfinite(gnss.lla).all(axis=1) & np.isfinite(gnss.v_n).all(axis=1)
     t, lla, v = gnss.time[known], gnss.lla[known], gnss.v_n[known, :2]
+    if len(t) > 5:  # spikes of single fixes are the navigator's to judge
+        v[2:-2] = np.median(np.lib.stride_tricks.sliding_window_view(v.copy(), 5, axis=0), axis=-1)
     first = np.arange(len(t))
     last = np.searchsorted(t, t + _SPAN)
     first, last = first[last < len(t)], last[last < len(t)]

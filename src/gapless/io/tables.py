@@ -45,22 +45,12 @@ def load(path: Path, wanted: Collection[str]) -> Log:
     RecordingError
         If the file cannot be read, a known column is there twice or is not numeric.
     """
-    is_parquet = path.suffix == ".parquet"
     try:
-        table = _parquet(path) if is_parquet else _csv(path)
+        return _load(path, wanted)
     except RecordingError:
         raise
     except Exception as error:  # whatever a parser makes of damaged bytes, the user gets one line
         raise unreadable(path, error) from error
-    names = [name.strip().lstrip("\ufeff") for name in table.column_names]
-    first_row = 1 if is_parquet else 2
-    columns: dict[str, Array] = {}
-    for name, column in zip(names, table.columns, strict=True):
-        if name in columns:
-            raise RecordingError(f"{path}: column {name} is there twice; keep one")
-        if name in wanted:
-            columns[name] = _numbers(column, name, path, first_row)
-    return Log(str(path), columns, first_row)
 
 
 def load_numbers(path: Path, names: Sequence[Sequence[str]]) -> Log:
@@ -163,6 +153,20 @@ def _is_number(word: bytes) -> bool:
     except ValueError:
         return False
     return True
+
+
+def _load(path: Path, wanted: Collection[str]) -> Log:
+    is_parquet = path.suffix == ".parquet"
+    table = _parquet(path) if is_parquet else _csv(path)
+    first_row = 1 if is_parquet else 2
+    columns: dict[str, Array] = {}
+    for label, column in zip(table.column_names, table.columns, strict=True):
+        name = label.strip().lstrip("\ufeff")
+        if name in columns:
+            raise RecordingError(f"{path}: column {name} is there twice; keep one")
+        if name in wanted:
+            columns[name] = _numbers(column, name, path, first_row)
+    return Log(str(path), columns, first_row)
 
 
 def _parquet(path: Path) -> Any:
