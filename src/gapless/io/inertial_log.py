@@ -60,10 +60,10 @@ def imu_from_rates(log: Log, axes: Array | None = None) -> tuple[Imu, list[Note]
     gyro, accel = log.stack(GYRO), log.stack(ACCEL)
     _check_units(log, gyro, accel)
     if "dt" in log:
-        time, dt = log["time"], _given_intervals(log)
+        time, dt, mended = _given_intervals(log)
     else:
         time, dt, mended = _stamps(log)
-        notes += mended
+    notes += mended
     if axes is not None:
         gyro, accel = gyro @ axes.T, accel @ axes.T
     return Imu.from_rates(time, gyro, accel, dt), notes
@@ -214,10 +214,7 @@ def _stamps(log: Log) -> tuple[Array, Array, list[Note]]:
         )
         notes.append(log.note(what, len(time) - begin))
     dt, gap = intervals(time, period)
-    if gap.any():
-        silent = np.diff(time)[gap[1:]]
-        what = f"gaps, {silent.sum():.1f} s in all, the longest {silent.max():.2f} s; left open"
-        notes.append(log.note(what, int(gap.sum())))
+    notes += _gap_notes(log, np.diff(time)[gap[1:]])
     late = int(((dt > 1.5 * period) & ~gap).sum())
     if late:
         notes.append(log.note("intervals longer than 1.5 nominal ones, covered by the next sample", late))
@@ -228,22 +225,25 @@ def _stamps(log: Log) -> tuple[Array, Array, list[Note]]:
     return time, dt, notes
 
 
-def _given_intervals(log: Log) -> Array:
-    """The log's own intervals, stretched to the row before where rows between were dropped."""
-    dt = log["dt"].copy()
-    silent = np.diff(log["time"]) - dt[1:]
+def _given_intervals(log: Log) -> tuple[Array, Array, list[Note]]:
+    """Stamps and intervals as logged; stretched to the row before where rows between were dropped."""
+    time, dt = log["time"], log["dt"].copy()
+    silent = np.diff(time) - dt[1:]
     wrong = ~(dt > 0.0) | ~np.isfinite(dt)
     wrong[1:] |= silent < -1e-3 * np.median(dt)
     if wrong.any():
         k = int(np.argmax(wrong))
-        log.refuse(
-            f"dt is {dt[k]:.6g} s, longer than the time since the row before or not positive",
-            "mend it, or leave the column out",
-            k,
-        )
-    lost = np.zeros(len(dt), bool)
+        what = f"dt is {dt[k]:.6g} s: not positive, or more than the time since the row before"
+        log.refuse(what, "mend it, or leave the column out", k)
+    gap = silent > gap_length(float(np.median(dt)))
     if log.rows is not None:
-        lost[1:] = np.diff(log.rows) > 1
-    lost[1:] &= silent < gap_length(float(np.median(dt)))
-    dt[lost] = np.diff(log["time"], prepend=0.0)[lost]
-    return dt
+        lost = 1 + np.flatnonzero((np.diff(log.rows) > 1) & ~gap)
+        dt[lost] = time[lost] - time[lost - 1]
+    return time, dt, _gap_notes(log, np.diff(time)[gap])
+
+
+def _gap_notes(log: Log, silent: Array) -> list[Note]:
+    if not len(silent):
+        return []
+    what = f"gaps, {silent.sum():.1f} s in all, the longest {silent.max():.2f} s; left open"
+    return [log.note(what, len(silent))]

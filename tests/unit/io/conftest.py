@@ -12,12 +12,17 @@ from gapless.units import DEG
 ORIGIN = np.array([48.0 * DEG, 11.0 * DEG, 500.0])
 
 
-def circle(time):
+def on_circle(time):
     """A place, velocity [m/s] and heading [rad] on a circle of 200 m at 10 m/s."""
     angle = time * 10.0 / 200.0
     ned = 200.0 * np.column_stack([np.sin(angle), 1.0 - np.cos(angle), np.zeros_like(angle)])
     v_n = 10.0 * np.column_stack([np.cos(angle), np.sin(angle), np.zeros_like(angle)])
     return ned_to_lla(ned, ORIGIN), v_n, angle
+
+
+@pytest.fixture
+def circle():
+    return on_circle
 
 
 @pytest.fixture
@@ -31,7 +36,7 @@ def drive():
     imu |= dict(zip(("gyro_x", "gyro_y", "gyro_z"), gyro.T, strict=True))
     imu |= dict(zip(("accel_x", "accel_y", "accel_z"), accel.T, strict=True))
     g = np.arange(1000.2, 1100.0, 0.2)
-    lla, v_n, heading = circle(g - 1000.0)
+    lla, v_n, heading = on_circle(g - 1000.0)
     place = {"time": g, "lat": lla[:, 0] / DEG, "lon": lla[:, 1] / DEG, "height": lla[:, 2]}
     speed = dict(zip(("v_north", "v_east", "v_down"), v_n.T, strict=True))
     sd = {f"sd_{axis}": np.full(len(g), 1.5) for axis in ("north", "east", "down")}

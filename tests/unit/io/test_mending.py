@@ -174,3 +174,13 @@ def test_velocity_spikes_are_left_to_the_gate(drive):
     drive["gnss"]["v_north"][::40] += 400.0
     r = read(drive)
     assert r.gnss.v_n[40, 0] > 390.0
+
+
+def test_given_intervals_are_kept_and_lost_rows_bridged(drive):
+    rng = np.random.default_rng(3)
+    drive["imu"]["dt"] = 0.01 - rng.uniform(0.0, 1e-4, 10_000)
+    drive["imu"]["gyro_x"][[400, 401]] = np.nan
+    r = read(drive)
+    expected = np.delete(drive["imu"]["dt"], [400, 401])
+    expected[400] = drive["imu"]["time"][402] - drive["imu"]["time"][399]
+    np.testing.assert_array_equal(r.imu.dt, expected)
