@@ -9,7 +9,7 @@ import numpy as np
 
 from gapless.evaluation import Scores
 from gapless.recording import Array
-from gapless.reports.decimate import envelope
+from gapless.reports.decimate import envelope, scatter
 from gapless.reports.quantities import Quantity, channel, state
 from gapless.solution import Innovations, Solution
 from gapless.units import DEG
@@ -58,7 +58,11 @@ def _chart(
     """One chart; `bands` are half widths, shape (n, len(series))."""
     columns = np.column_stack([y for _, y in series])
     table = columns if bands is None else np.column_stack([columns, bands])
-    t, table = envelope(time, table)
+    if more.get("dots"):
+        rows = scatter(np.abs(columns).max(axis=1))
+        t, table = time[rows], table[rows]
+    else:
+        t, table = envelope(time, table)
     k = len(series)
     drawn: list[dict[str, Any]] = [
         {"name": name, "y": significant(table[:, i])} for i, (name, _) in enumerate(series)

@@ -45,6 +45,29 @@ def envelope(time: Array, columns: Array, points: int = 3000) -> tuple[Array, Ar
     return time[np.column_stack([edges[:-1], middle]).ravel()], found
 
 
+def scatter(size: Array, points: int = 3000) -> NDArray[np.int64]:
+    """Rows of a cloud of dots: evenly spaced ones that keep its density, and its outliers.
+
+    Parameters
+    ----------
+    size : ndarray, shape (n,)
+        How far out each dot lies; NaN counts as not at all.
+    points : int
+        Most rows to keep; a tenth of them go to the largest.
+
+    Returns
+    -------
+    ndarray of int
+        Indices of the rows kept, increasing.
+    """
+    n = len(size)
+    if n <= points:
+        return np.arange(n)
+    far = np.argsort(np.nan_to_num(size))[n - points // 10 :]
+    even = np.linspace(0, n - 1, points - len(far)).astype(int)
+    return np.union1d(even, far)
+
+
 def simplify(time: Array, xy: Array, points: int = 4000, tolerance: float = 0.1) -> NDArray[np.int64]:
     """Rows of a track that draw it, and place it in time, as the whole would.
 

@@ -62,6 +62,24 @@ def number(value: float, unit: str = "", digits: int = 3) -> str:
     return _signed(value, min(max(decimals, 0), 9)) + (f"\u00a0{unit}" if unit else "")
 
 
+def compact(value: float, unit: str = "") -> str:
+    """A number to at most four significant digits, without trailing zeros, with its unit.
+
+    Parameters
+    ----------
+    value : float
+    unit : str
+
+    Returns
+    -------
+    str
+        For a setting rather than a measurement: "0.05 m".
+    """
+    text = number(value, "", 4)
+    text = text.rstrip("0").rstrip(".") if "." in text else text
+    return text + (f"\u00a0{unit}" if unit else "")
+
+
 def measured(value: float, sd: float | None, unit: str = "") -> str:
     """A number with its standard deviation, both to two digits of the latter.
 
@@ -77,7 +95,7 @@ def measured(value: float, sd: float | None, unit: str = "") -> str:
         For instance "−0.152 ± 0.012 s".
     """
     if sd is None or not math.isfinite(sd) or sd <= 0.0 or not math.isfinite(value):
-        return number(value, unit, 4)
+        return compact(value, unit)
     decimals = min(max(1 - math.floor(math.log10(sd)), 0), 9)
     text = f"{_signed(value, decimals)} ± {sd:.{decimals}f}"
     return text + (f"\u00a0{unit}" if unit else "")

@@ -104,11 +104,12 @@ def _section(key: str, body: str) -> str:
 
 def _lead(solution: Solution, scores: Scores | None) -> str:
     moved = distance(travelled(solution.trajectory))
-    text = f"{duration(span(solution.trajectory))} and {moved}, navigated by {solution.system}"
+    lasting = duration(span(solution.trajectory))
+    text = f"{lasting} and {moved}, fused by the system \u201c{solution.system}\u201d"
     count = len(solution.outages)
     if count:
         text += f" through {count} GNSS outage{'s' * (count > 1)}"
-    return escape(text + ("." if scores is None else f". The truth is {scores.statement}."))
+    return escape(text + ("." if scores is None else f". Truth: {scores.statement}."))
 
 
 def _asset(name: str) -> str:

@@ -199,9 +199,8 @@ def decision_value(decision: Decision) -> str:
     if isinstance(value, str):
         return f"{value} {decision.unit}".strip()
     if isinstance(value, tuple):
-        text = ", ".join(number(one, "", 4) for one in value)
-        sd = f" ± {number(decision.sd, '', 2)}" if decision.sd is not None else ""
-        return f"{text}{sd}" + (f"\u00a0{decision.unit}" if decision.unit else "")
+        text = ", ".join(measured(one, decision.sd) for one in value)
+        return text + (f"\u00a0{decision.unit}" if decision.unit else "")
     return measured(float(value), decision.sd, decision.unit)
 
 
@@ -273,7 +272,8 @@ def _score_lines(summary: Mapping[str, Any]) -> Iterator[str]:
         if np.isfinite(angles).any():
             yield f"  roll, pitch, heading {', '.join(map(number, angles))} deg RMS"
     if scores["height_offset"] is not None:
-        yield f"  height {number(scores['height_offset'], 'm')} above the truth, taken off"
+        side = "above" if scores["height_offset"] > 0.0 else "below"
+        yield f"  height {number(abs(scores['height_offset']), 'm')} {side} the truth as a rule, taken off"
 
 
 def _outage_lines(summary: Mapping[str, Any]) -> Iterator[str]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterable, Sequence
 from html import escape
 
@@ -108,9 +109,14 @@ def tiles(solution: Solution, scores: Scores | None) -> str:
     sd = typical_sd(solution)
     found.append(("Position sd", number(sd, "m", 2), "median, horizontal, with GNSS"))
     return "".join(
-        f"<div><dt>{escape(title)}</dt><dd><strong>{escape(value)}</strong><span>{escape(note)}</span></dd></div>"
+        f"<div><dt>{escape(title)}</dt><dd><strong>{_small_units(value)}</strong><span>{escape(note)}</span></dd></div>"
         for title, value, note in found
     )
+
+
+def _small_units(text: str) -> str:
+    """Words and units of a headline figure, escaped and set smaller than its digits."""
+    return re.sub(r"([^\W\d_][\w/]*|%)", r"<small>\1</small>", escape(text))
 
 
 def _accuracy_tiles(scores: Scores | None) -> list[tuple[str, str, str]]:
@@ -124,9 +130,9 @@ def _accuracy_tiles(scores: Scores | None) -> list[tuple[str, str, str]]:
     if told:
         worst = max(told, key=lambda o: o.horizontal_max)
         note = f"largest error of each of {len(told)}"
-        found.append(("Median outage", number(scores.horizontal.median, "m", 2), note))
+        found.append(("Median outage", number(scores.horizontal.median, "m"), note))
         share = f"{number(worst.percent, '%', 2)} of {distance(worst.distance)}"
-        found.append(("Worst outage", number(worst.horizontal_max, "m", 2), share))
+        found.append(("Worst outage", number(worst.horizontal_max, "m"), share))
     return found
 
 
@@ -153,14 +159,14 @@ def outages(scores: Scores | None) -> str:
 def _outage_row(index: int, o: OutageScore) -> list[Cell]:
     name = f'<button type="button" data-from="{o.start:g}" data-to="{o.end:g}">{index}</button>'
     cells = numeric(
-        f"{number(o.start, digits=4)}, {number(o.end - o.start, 's')}",
+        f"{o.start:g}\u2013{o.end:g}&nbsp;s",
         f"<b>{number(o.horizontal_max, 'm')}</b>",
         *(
             number(x, "m")
             for x in (o.horizontal_rmse, o.horizontal_end, o.along_max, o.cross_max, o.vertical_max)
         ),
         number(o.velocity_max, "m/s", 2),
-        number(o.heading_max / DEG, "°", 2),
+        number(o.heading_max / DEG, "", 2) + "°",
         distance(o.distance),
         number(o.percent, "%", 2),
         percent(o.coverage),
@@ -181,7 +187,11 @@ def _pool(scores: Scores) -> str:
     if apart:
         words.append(f"{apart} of {len(scores.outages)} set apart and left out of these figures.")
     if math.isfinite(scores.height_offset):
-        words.append(f"A height offset of {number(scores.height_offset, 'm')} is taken off vertical errors.")
+        side = "above" if scores.height_offset > 0.0 else "below"
+        high = number(abs(scores.height_offset), "m")
+        words.append(
+            f"The solution lies {high} {side} the truth as a rule; vertical errors are without that."
+        )
     return f"<p>{' '.join(words)}</p>"
 
 
@@ -262,9 +272,9 @@ def states(solution: Solution) -> str:
         sds = solution.states_sd.get(name)
         for k, axis in enumerate(shown.axes):
             sd = None if sds is None else float(sds[-1, k] / shown.scale)
-            text = measured(float(values[-1, k] / shown.scale), sd)
-            rows.append([escape(shown.label), escape(axis), (text, "n"), escape(shown.unit)])
-    return table("States at the end", ["State", "Axis", ("Value", "n"), "Unit"], rows)
+            text = measured(float(values[-1, k] / shown.scale), sd, shown.unit)
+            rows.append([escape(shown.label), escape(axis), (escape(text), "n")])
+    return table("States at the end", ["State", "Axis", ("Value", "n")], rows)
 
 
 def notes(solution: Solution, recording: Recording) -> str:

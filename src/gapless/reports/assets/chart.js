@@ -49,7 +49,7 @@ class Chart extends Drawing {
     const { t, series, dots, area } = this.spec;
     const first = Math.max(0, below(t, view.from) - 1), last = Math.min(t.length - 1, below(t, view.to) + 2);
     this.rows = [first, last];
-    series.forEach((s, k) => { if (s.band) this.band(c, g, s.band.map((b, i) => b === null ? null : dots ? 0 : s.y[i]), s.band, this.hue(k)); });
+    series.forEach((s, k) => { if (s.band) this.band(c, g, s.band.map((b, i) => b === null ? null : dots ? 0 : s.y[i]), s.band, dots ? "quiet" : this.hue(k), dots ? 0.16 / series.length : 0.13); });
     if (area !== undefined) this.band(c, g, series[area].y.map(v => v === null ? null : 0), series[area].y, this.hue(area), 0.16);
     for (let k = series.length - 1; k >= 0; k--) if (k !== area) (dots ? this.dots : this.line).call(this, c, g, series[k].y, this.hue(k));
     c.restore();
@@ -74,7 +74,7 @@ class Chart extends Drawing {
       c.strokeStyle = colour(v === 0 && !spec.log ? "rule" : "grid");
       c.beginPath(); c.moveTo(g.left, y); c.lineTo(g.right, y); c.stroke();
       c.fillStyle = colour("faint");
-      c.fillText(spec.log ? short(v) : tickLabel(v, degrees.step), g.left - 7, y);
+      c.fillText(spec.log ? String(+v.toPrecision(2)) : tickLabel(v, degrees.step), g.left - 7, y);
     }
     c.textBaseline = "top";
     c.textAlign = "center";

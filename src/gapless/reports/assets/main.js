@@ -25,7 +25,7 @@ for (const button of document.querySelectorAll("[data-from]")) {
   button.addEventListener("click", () => {
     const from = +button.dataset.from, to = +button.dataset.to, margin = 0.25 * (to - from);
     setRange(from - margin, to + margin);
-    setTime(to);
+    setTime(to - 0.5);
     track.fit(from, to);
     document.getElementById("track").scrollIntoView({ behavior: "smooth" });
   });
@@ -33,6 +33,7 @@ for (const button of document.querySelectorAll("[data-from]")) {
 
 matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => request(true));
 const printing = on => {
+  if (on) setTime(null);
   document.documentElement.toggleAttribute("data-theme", on);
   if (on) document.documentElement.dataset.theme = "light";
   for (const d of drawings) { d.sharp = on ? 3 : 1; d.stale = true; d.refresh(); }

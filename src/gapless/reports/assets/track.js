@@ -40,13 +40,13 @@ class Track extends Drawing {
     if (!this.scale || this.fitted !== this.width) { this.fitted = this.width; this.fit(); }
     this.grid(c);
     const [open, away] = this.track.fixes;
-    this.dots(c, open, 0.3);
-    this.dots(c, away, 0.3, true);
+    this.dots(c, open, 0.5);
+    this.dots(c, away, 0.5, true);
     this.ellipses(c);
     c.lineJoin = c.lineCap = "round";
-    this.path(c, this.track, "c0", 2.4);
+    if (this.track.reference) this.path(c, this.track.reference, "ink", 1.2, 30);
+    this.path(c, this.track, "c0", 2.2);
     for (const [a, b] of this.track.coasting) this.stretch(c, a, b);
-    if (this.track.reference) this.path(c, this.track.reference, "ink", 1, 30);
     this.ends(c);
     this.numbers(c);
     this.furniture(c);
@@ -66,8 +66,8 @@ class Track extends Drawing {
     c.stroke();
   }
   dots(c, p, alpha, hollow = false) {
-    const r = Math.min(3, Math.max(1.3, 0.9 * Math.sqrt(this.scale)));
-    c.globalAlpha = hollow ? 0.55 : alpha;
+    const r = Math.min(3.2, 1.2 + 0.6 * Math.sqrt(this.scale));
+    c.globalAlpha = hollow ? 0.8 : alpha;
     c.fillStyle = c.strokeStyle = colour("fix");
     c.lineWidth = 1;
     for (let i = 0; i < p.x.length; i++) {
@@ -90,7 +90,7 @@ class Track extends Drawing {
     const { t, x, y } = this.track, start = this.at(a), end = this.at(b);
     if (!start || !end) return;
     c.strokeStyle = colour("alone");
-    c.lineWidth = 4;
+    c.lineWidth = 3.4;
     c.beginPath();
     c.moveTo(this.px(start[0]), this.py(start[1]));
     for (let i = below(t, a) + 1; i < t.length && t[i] < b; i++) c.lineTo(this.px(x[i]), this.py(y[i]));
@@ -190,7 +190,7 @@ class Track extends Drawing {
     if (track.ellipses.length) add("95 % ellipse", "alone", "ring");
     if (track.reference) add("reference", "ink");
     add("GNSS fix", "fix", "dot");
-    if (track.fixes[1].x.length) add("withheld fix", "fix", "ring");
+    if (track.fixes[1].x.length) add("withheld fix", "fix", "hollow");
   }
 
   zoom(factor, x = this.width / 2, y = this.height / 2) {

@@ -19,7 +19,7 @@ class Drawing {
     this.picture = document.createElement("canvas");
     this.stale = true;
     drawings.push(this);
-    new ResizeObserver(() => { this.stale = true; request(); }).observe(canvas);
+    new ResizeObserver(() => { this.stale = true; this.refresh(); }).observe(canvas);
   }
   refresh() {
     const { canvas, picture } = this;
@@ -83,7 +83,7 @@ function below(list, value) {
 // Round steps that cut a range into about so many parts.
 function ticks(low, high, count) {
   const raw = (high - low) / Math.max(count, 1), power = 10 ** Math.floor(Math.log10(raw));
-  const step = [1, 2, 5, 10].map(k => k * power).find(k => k >= raw * 0.999);
+  const step = [1, 2, 5, 10].map(k => k * power).find(k => k >= raw * 0.75);
   const found = [];
   for (let k = Math.ceil(low / step - 1e-9); k * step <= high + 1e-9 * step; k++) found.push(k * step);
   return { step, found };
