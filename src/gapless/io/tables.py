@@ -9,8 +9,9 @@ from __future__ import annotations
 import re
 from array import array
 from collections.abc import Collection, Sequence
+from io import RawIOBase
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, BinaryIO, Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +21,8 @@ from gapless.io.log import Log
 from gapless.recording import Array
 
 _COMMENTS: Final = (b"#", b"%")
+_HEAD: Final = 1 << 16
+"""Bytes in which the first row of data is looked for."""
 _TO_BLANK: Final = bytes.maketrans(b",\t", b"  ")
 _CHUNK: Final = 1 << 18
 """Bytes worked on at a time when blanks are removed: small enough for the second-level cache."""
@@ -73,7 +76,7 @@ def load_numbers(path: Path, names: Sequence[Sequence[str]]) -> Log:
         If the file cannot be read, no layout fits, or a cell is not a number: with its line.
     """
     try:
-        raw = path.read_bytes()
+        raw = read_head(path)
     except OSError as error:
         raise unreadable(path, error) from error
     skipped, start, first = first_data_line(raw)
@@ -83,11 +86,34 @@ def load_numbers(path: Path, names: Sequence[Sequence[str]]) -> Log:
     if layout is None:
         known = " or ".join(f"{len(layout)} ({', '.join(layout)})" for layout in names)
         raise RecordingError(f"{path}:{skipped + 1}: {len(first)} columns; make them {known}")
-    columns = _fast(raw, start, len(layout))
+    line = raw[start : start + 4096].split(b"\n", 1)[0].rstrip(b"\r")
+    columns = _fast(path, start, line, len(layout))
     if columns is not None:
         return Log(str(path), dict(zip(layout, columns, strict=True)), skipped + 1)
-    columns, rows = _slow(path, raw, start, skipped, len(layout))
+    columns, rows = _slow(path, start, skipped, len(layout))
     return Log(str(path), dict(zip(layout, columns, strict=True)), rows=rows)
+
+
+def read_head(path: Path) -> bytes:
+    """The beginning of a text file: 64 kB, or all of it where comments fill half of that.
+
+    Parameters
+    ----------
+    path : Path
+
+    Returns
+    -------
+    bytes
+
+    Raises
+    ------
+    OSError
+    """
+    with path.open("rb") as file:
+        raw = file.read(_HEAD)
+        if len(raw) == _HEAD and 2 * first_data_line(raw)[1] > _HEAD:
+            raw += file.read()
+    return raw
 
 
 def first_data_line(raw: bytes) -> tuple[int, int, list[bytes]]:
@@ -209,60 +235,71 @@ def _join(column: Any) -> Array:
     import pyarrow as pa
 
     chunks = []
-    for chunk in column.cast(pa.float64(), safe=False).chunks:
+    if column.type != pa.float64():  # casting imports pyarrow.compute: not where it can be helped
+        column = column.cast(pa.float64(), safe=False)
+    for chunk in column.chunks:
         chunks.append(np.from_dlpack(chunk.fill_null(float("nan")) if chunk.null_count else chunk))
     return np.concatenate([*chunks, np.empty(0)])
 
 
-def _fast(raw: bytes, start: int, width: int) -> list[Array] | None:
-    """Columns by pyarrow; None where a line is not as regular as it wants."""
+def _fast(path: Path, start: int, line: bytes, width: int) -> list[Array] | None:
+    """Columns by pyarrow, block by block; None where a line is not as regular as it wants."""
     import pyarrow as pa
     from pyarrow import csv
 
-    line = raw[start : start + 4096].split(b"\n", 1)[0].rstrip(b"\r")
-    if b"," in line or b"\t" in line:
-        raw = raw.translate(_TO_BLANK)
-    data: Any = memoryview(raw)[start:]
-    if line.count(b" ") != width - 1 or b"  " in line or line[:1] == b" " or line[-1:] == b" ":
-        data = _single_blanks(np.frombuffer(raw, np.uint8)[start:])
     names = [f"f{i}" for i in range(width)]
-    try:
-        table = csv.read_csv(
-            pa.BufferReader(pa.py_buffer(data)),
-            read_options=csv.ReadOptions(autogenerate_column_names=True, block_size=_BLOCK),
-            parse_options=csv.ParseOptions(delimiter=" ", quote_char=False),
-            convert_options=csv.ConvertOptions(column_types=dict.fromkeys(names, pa.float64())),
-        )
-    except pa.ArrowInvalid:
-        return None
+    with path.open("rb") as file:
+        file.seek(start)
+        try:
+            table = csv.read_csv(
+                file
+                if len(line.split(b" ")) == width and b"" not in line.split(b" ")
+                else _SingleBlanks(file),
+                read_options=csv.ReadOptions(autogenerate_column_names=True, block_size=_BLOCK),
+                parse_options=csv.ParseOptions(delimiter=" ", quote_char=False),
+                convert_options=csv.ConvertOptions(column_types=dict.fromkeys(names, pa.float64())),
+            )
+        except pa.ArrowInvalid:
+            return None
     extra = table.columns[width:]
     if table.num_columns < width or any(column.null_count < table.num_rows for column in extra):
         return None
     return [_join(column) for column in table.columns[:width]]
 
 
-def _single_blanks(text: NDArray[np.uint8]) -> NDArray[np.uint8]:
-    """One blank between cells, none before the first."""
-    out = []
-    open_before = True
-    for i in range(0, len(text), _CHUNK):
-        chunk = text[i : i + _CHUNK]
-        blank = chunk == 32
+class _SingleBlanks(RawIOBase):
+    """A file with tabs and commas as blanks, one blank between cells, none before the first."""
+
+    def __init__(self, file: BinaryIO) -> None:
+        self._file = file
+        self._open = True
+
+    def readable(self) -> bool:
+        return True
+
+    def read(self, size: int = -1) -> bytes:
+        out = []
+        while size and (piece := self._file.read(min(size, _CHUNK) if size > 0 else _CHUNK)):
+            out.append(self._squeeze(piece.translate(_TO_BLANK)))
+            size -= len(out[-1])
+        return b"".join(out)
+
+    def _squeeze(self, piece: bytes) -> bytes:
+        text = np.frombuffer(piece, np.uint8)
+        blank = text == 32
         drop = np.empty_like(blank)
-        drop[0] = open_before
-        np.logical_or(blank[:-1], chunk[:-1] == 10, out=drop[1:])
-        open_before = bool(blank[-1] or chunk[-1] == 10)
+        drop[0] = self._open
+        np.logical_or(blank[:-1], text[:-1] == 10, out=drop[1:])
+        self._open = bool(blank[-1] or text[-1] == 10)
         drop &= blank
-        out.append(chunk[~drop])
-    return np.concatenate(out)
+        squeezed: bytes = text[~drop].tobytes()
+        return squeezed
 
 
-def _slow(
-    path: Path, raw: bytes, start: int, skipped: int, width: int
-) -> tuple[list[Array], NDArray[np.int64]]:
+def _slow(path: Path, start: int, skipped: int, width: int) -> tuple[list[Array], NDArray[np.int64]]:
     """Line by line: takes comments anywhere, and knows the line that is at fault."""
     values, rows = array("d"), array("q")
-    for number, line in enumerate(raw[start:].split(b"\n"), skipped + 1):
+    for number, line in enumerate(path.read_bytes()[start:].split(b"\n"), skipped + 1):
         words = _split(line)
         if not words or words[0].startswith(_COMMENTS):
             continue

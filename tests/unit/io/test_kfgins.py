@@ -72,6 +72,11 @@ def test_headers(write_text, header):
     assert len(r.imu) == 10_000
 
 
+def test_header_longer_than_the_head(write_text):
+    r = io.read(*write_text(header="\n".join(["# " + 78 * "-"] * 2000)))
+    assert len(r.imu) == 10_000
+
+
 def test_comments_and_blank_lines_between_rows(write_text, increments):
     imu, gnss = write_text()
     lines = imu.read_text().splitlines()

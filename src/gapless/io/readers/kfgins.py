@@ -12,7 +12,7 @@ from gapless.errors import RecordingError
 from gapless.io.assemble import assemble
 from gapless.io.inertial_log import DTHETA, DVEL
 from gapless.io.satellite_log import POSITION, SD_POSITION, SD_VELOCITY, VELOCITY
-from gapless.io.tables import first_data_line, load_numbers
+from gapless.io.tables import first_data_line, load_numbers, read_head
 from gapless.recording import Array, Recording
 
 IMU_LAYOUT: Final = ("time", *DTHETA, *DVEL)
@@ -20,8 +20,8 @@ GNSS_LAYOUTS: Final = (
     ("time", *POSITION, *SD_POSITION),
     ("time", *POSITION, *SD_POSITION, *VELOCITY, *SD_VELOCITY),
 )
-_HEAD: Final = 1 << 14
-"""Bytes looked at to tell which file is which."""
+_ROWS: Final = 50
+"""Rows looked at to tell which file is which."""
 
 
 class KfGins:
@@ -70,13 +70,12 @@ class KfGins:
 def _head(path: Path) -> Array:
     """The first rows of a text file, as far as they are numbers; no columns if none is."""
     try:
-        with path.open("rb") as file:
-            raw = file.read(_HEAD)
+        raw = read_head(path)
     except OSError:
         return np.empty((0, 0))
     _, start, first = first_data_line(raw)
     rows: list[list[float]] = []
-    for line in raw[start:].split(b"\n")[: None if len(raw) < _HEAD else -1]:
+    for line in raw[start:].split(b"\n")[:_ROWS]:
         try:
             row = [float(word) for word in line.replace(b",", b" ").split()]
         except ValueError:
