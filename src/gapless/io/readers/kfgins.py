@@ -12,7 +12,7 @@ from gapless.errors import RecordingError
 from gapless.io.assemble import assemble
 from gapless.io.inertial_log import DTHETA, DVEL
 from gapless.io.satellite_log import POSITION, SD_POSITION, SD_VELOCITY, VELOCITY
-from gapless.io.tables import first_data_line, load_numbers, read_head
+from gapless.io.text import first_data_line, load_numbers, read_head
 from gapless.recording import Array, Recording
 
 IMU_LAYOUT: Final = ("time", *DTHETA, *DVEL)
