@@ -29,7 +29,11 @@ GYRO, ACCEL, GYRO_BIAS, ACCEL_BIAS, TAU = 1e-4, 1e-2, 1e-6, 1e-4, 3600.0
 """Random walks [rad/sqrt s, m/s/sqrt s], bias deviations [rad/s, m/s^2], correlation time [s]."""
 START = (0.7, 0.3, 100.0, 10.0, 0.0, 0.0)
 """Latitude, longitude [rad], height [m], velocity [m/s]."""
-COMBINATIONS = (("none", (), 0.0, 1), ("none", (), 0.05, 10), ("mounting, axle", ("mounting", "axle"), 0.0, 0))
+COMBINATIONS = (
+    ("none", (), 0.0, 1),
+    ("none", (), 0.05, 10),
+    ("mounting, axle", ("mounting", "axle"), 0.0, 0),
+)
 """Optional states, covariance period [s], the same in samples for C (0: C has no such states)."""
 
 
@@ -111,7 +115,7 @@ def main() -> None:
                     theirs.append(run_c(c, every))
             median = statistics.median(ours)
             rate = f"{1.0 / period:.0f} Hz" if period else "every sample"
-            text = f"optional states: {name:14s} covariance: {rate:12s} ours {SAMPLES / median / 1e6:5.2f} M/s"
+            text = f"optional states {name:15s} covariance {rate:13s} ours {SAMPLES / median / 1e6:5.2f} M/s"
             if theirs:
                 limit = statistics.median(theirs)
                 text += f"  C {SAMPLES / limit / 1e6:5.2f} M/s  ratio {limit / median:4.0%}"

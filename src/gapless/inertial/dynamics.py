@@ -1,8 +1,4 @@
-"""Linearised error dynamics in NED: the blocks of F, and Phi applied to a covariance.
-
-Phi = I + F dt is never formed: its few non-zero entries stay scalars, `apply_core` runs once over
-the columns of P with all fifteen rows in registers, and P' = Phi (Phi P)' needs one transpose.
-"""
+"""Linearised error dynamics in NED: the entries of F, and Phi = I + F dt."""
 
 from __future__ import annotations
 
@@ -119,131 +115,75 @@ def position_rows(v: Three, local: Any) -> tuple[Any, Any, Any, Any, Any]:
 
 
 @inline
-def apply_core(
-    phi_p: Any,
-    phi_v: Any,
-    phi_a: Any,
-    f: Three,
+def transition(
+    v: Three,
+    local: Any,
+    f_n: Three,
     c: Nine,
+    w_b: Three,
+    f_b: Three,
     dt: Any,
     decay: Any,
-    width: int,
-    p: Array,
-    out: Array,
+    offsets: Any,
+    phi: Array,
+    tail: Array,
 ) -> None:
-    """Out = Phi p for the fifteen core states; further rows are copied.
+    """Phi = I + F dt: its navigation rows, stored dense, and the diagonal of the rest.
 
     Parameters
     ----------
-    phi_p, phi_v, phi_a : tuple
-        `position_rows`, `velocity_rows`, `attitude_rows`.
-    f : tuple of 3
-        Specific-force increment in NED over the interval [m/s].
+    v : tuple of 3
+        Velocity [m/s].
+    local : tuple
+        `local_earth`.
+    f_n : tuple of 3
+        Specific force integrated over the interval, NED [m/s].
     c : tuple of 9
         C_nb.
+    w_b, f_b : tuple of 3
+        Rate [rad] and specific force [m/s] as measured, integrated over the interval, body axes.
     dt : float
         [s]
     decay : tuple of 2
-        exp(-dt / tau) of gyro and accelerometer bias.
-    width : int
-        Columns in use.
-    p, out : ndarray, shape (ROW * ROW,)
-        Rows of fixed length, so that a compiler sees constant distances and makes vectors.
-    """
-    a0, a1, a2, a3, a4 = phi_p[0] * dt, phi_p[1] * dt, phi_p[2] * dt, phi_p[3] * dt, phi_p[4] * dt
-    b0, b1, b2, b3 = phi_v[0] * dt, phi_v[1] * dt, phi_v[2] * dt, phi_v[3] * dt
-    b4, b5, b6, b7 = phi_v[4] * dt, phi_v[5] * dt, 1.0 + phi_v[6] * dt, phi_v[7] * dt
-    b8, b9, b10, b11 = phi_v[8] * dt, phi_v[9] * dt, 1.0 + phi_v[10] * dt, phi_v[11] * dt
-    b12, b13 = phi_v[12] * dt, phi_v[13] * dt
-    e0, e1, e2, e3 = phi_a[0] * dt, phi_a[1] * dt, phi_a[2] * dt, phi_a[3] * dt
-    e4, e5, e6, e7 = phi_a[4] * dt, phi_a[5] * dt, phi_a[6] * dt, phi_a[7] * dt
-    w0, w1, w2 = phi_a[8] * dt, phi_a[9] * dt, phi_a[10] * dt
-    c0, c1, c2, c3, c4, c5 = c[0] * dt, c[1] * dt, c[2] * dt, c[3] * dt, c[4] * dt, c[5] * dt
-    c6, c7, c8 = c[6] * dt, c[7] * dt, c[8] * dt
-    for j in range(width):
-        pn, pe, pd = p[j], p[j + ROW], p[j + 2 * ROW]
-        vn, ve, vd = p[j + 3 * ROW], p[j + 4 * ROW], p[j + 5 * ROW]
-        an, ae, ad = p[j + 6 * ROW], p[j + 7 * ROW], p[j + 8 * ROW]
-        gx, gy, gz = p[j + 9 * ROW], p[j + 10 * ROW], p[j + 11 * ROW]
-        x, y, z = p[j + 12 * ROW], p[j + 13 * ROW], p[j + 14 * ROW]
-        out[j] = pn + a0 * pn + a1 * pd + dt * vn
-        out[j + ROW] = pe + a2 * pn + a3 * pe + a4 * pd + dt * ve
-        out[j + 2 * ROW] = pd + dt * vd
-        out[j + 3 * ROW] = (b0 * pn + b1 * pd + b6 * vn + b7 * ve + b8 * vd) + (
-            f[2] * ae - f[1] * ad - (c0 * x + c1 * y + c2 * z)
-        )
-        out[j + 4 * ROW] = (b2 * pn + b3 * pd + b9 * vn + b10 * ve + b11 * vd) + (
-            f[0] * ad - f[2] * an - (c3 * x + c4 * y + c5 * z)
-        )
-        out[j + 5 * ROW] = (b4 * pn + b5 * pd + b12 * vn + b13 * ve + vd) + (
-            f[1] * an - f[0] * ae - (c6 * x + c7 * y + c8 * z)
-        )
-        out[j + 6 * ROW] = (an + e0 * pn + e1 * pd + e5 * ve + w2 * ae - w1 * ad) - (
-            c0 * gx + c1 * gy + c2 * gz
-        )
-        out[j + 7 * ROW] = (ae + e2 * pd + e6 * vn - w2 * an + w0 * ad) - (c3 * gx + c4 * gy + c5 * gz)
-        out[j + 8 * ROW] = (ad + e3 * pn + e4 * pd + e7 * ve + w1 * an - w0 * ae) - (
-            c6 * gx + c7 * gy + c8 * gz
-        )
-        out[j + 9 * ROW], out[j + 10 * ROW], out[j + 11 * ROW] = decay[0] * gx, decay[0] * gy, decay[0] * gz
-        out[j + 12 * ROW], out[j + 13 * ROW], out[j + 14 * ROW] = decay[1] * x, decay[1] * y, decay[1] * z
-
-
-@inline
-def apply_extras(
-    offsets: Any, w: Three, f: Three, c: Nine, dt: Any, width: int, p: Array, out: Array
-) -> None:
-    """Add to `out` what the optional blocks do to velocity and attitude errors.
-
-    Parameters
-    ----------
+        1 / tau of gyro and accelerometer bias [1/s].
     offsets : ndarray of int, shape (7,)
         `Layout.offsets`.
-    w, f : tuple of 3
-        Body rate [rad] and specific force [m/s] integrated over the interval.
-    c : tuple of 9
-        C_nb.
-    dt : float
-        [s]
-    width : int
-    p, out : ndarray, shape (ROW * ROW,)
+    phi : ndarray, shape (NAV * ROW,)
+        Row by row; entries that are always zero are not written.
+    tail : ndarray, shape (ROW,)
+        The diagonal, of which the six bias entries are written.
     """
-    for block, target, u in ((offsets[0], 6, w), (offsets[1], 3, f)):
-        if block >= 0:
-            for i in range(3):
-                a0, a1, a2 = c[3 * i] * u[0], c[3 * i + 1] * u[1], c[3 * i + 2] * u[2]
-                row, k = (target + i) * ROW, block * ROW
-                for j in range(width):
-                    out[row + j] += a0 * p[k + j] + a1 * p[k + ROW + j] + a2 * p[k + 2 * ROW + j]
-    if offsets[2] >= 0:
-        for i in range(3):
-            row, k = (3 + i) * ROW, (offsets[2] + i) * ROW
-            for j in range(width):
-                out[row + j] += dt * p[k + j]
-
-
-@inline
-def add_noise(noise: Array, w: Three, dt: Any, p: Array) -> None:
-    """Add Q over one interval; velocity noise reaches the position with its half-interval moment.
-
-    Parameters
-    ----------
-    noise : ndarray, shape (5,)
-        Spectral densities: gyro [rad^2/s], accelerometer [m^2/s^3], gyro bias [rad^2/s^3],
-        accelerometer bias [m^2/s^5]; then the variance of a turn's proportional error [1].
-    w : tuple of 3
-        Body rate integrated over the interval [rad].
-    dt : float
-        [s]
-    p : ndarray, shape (ROW * ROW,)
-    """
-    turn = (w[0] * w[0] + w[1] * w[1] + w[2] * w[2]) / dt
-    angle = noise[0] * dt + noise[4] * turn
-    cross = 0.5 * noise[1] * dt * dt
+    r, s, a = position_rows(v, local), velocity_rows(v, local), attitude_rows(v, local)
+    n, e, d = 0, ROW, 2 * ROW
+    phi[n], phi[n + 2], phi[n + 3] = 1.0 + r[0] * dt, r[1] * dt, dt
+    phi[e], phi[e + 1], phi[e + 2], phi[e + 4] = r[2] * dt, 1.0 + r[3] * dt, r[4] * dt, dt
+    phi[d + 2], phi[d + 5] = 1.0, dt
+    n, e, d = 3 * ROW, 4 * ROW, 5 * ROW
+    phi[n], phi[n + 2] = s[0] * dt, s[1] * dt
+    phi[e], phi[e + 2] = s[2] * dt, s[3] * dt
+    phi[d], phi[d + 2] = s[4] * dt, s[5] * dt
+    phi[n + 3], phi[n + 4], phi[n + 5] = 1.0 + s[6] * dt, s[7] * dt, s[8] * dt
+    phi[e + 3], phi[e + 4], phi[e + 5] = s[9] * dt, 1.0 + s[10] * dt, s[11] * dt
+    phi[d + 3], phi[d + 4], phi[d + 5] = s[12] * dt, s[13] * dt, 1.0
+    phi[n + 7], phi[n + 8] = f_n[2], -f_n[1]
+    phi[e + 6], phi[e + 8] = -f_n[2], f_n[0]
+    phi[d + 6], phi[d + 7] = f_n[1], -f_n[0]
+    n, e, d = 6 * ROW, 7 * ROW, 8 * ROW
+    phi[n], phi[n + 2], phi[n + 4] = a[0] * dt, a[1] * dt, a[5] * dt
+    phi[e + 2], phi[e + 3] = a[2] * dt, a[6] * dt
+    phi[d], phi[d + 2], phi[d + 4] = a[3] * dt, a[4] * dt, a[7] * dt
+    phi[n + 6], phi[n + 7], phi[n + 8] = 1.0, a[10] * dt, -a[9] * dt
+    phi[e + 6], phi[e + 7], phi[e + 8] = -a[10] * dt, 1.0, a[8] * dt
+    phi[d + 6], phi[d + 7], phi[d + 8] = a[9] * dt, -a[8] * dt, 1.0
     for i in range(3):
-        p[(i) * ROW + 3 + i] += cross
-        p[(3 + i) * ROW + i] += cross
-        p[(3 + i) * ROW + 3 + i] += noise[1] * dt
-        p[(6 + i) * ROW + 6 + i] += angle
-        p[(9 + i) * ROW + 9 + i] += noise[2] * dt
-        p[(12 + i) * ROW + 12 + i] += noise[3] * dt
+        velocity, attitude = (3 + i) * ROW, (6 + i) * ROW
+        for j in range(3):
+            c_ij = c[3 * i + j]
+            phi[velocity + 12 + j] = phi[attitude + 9 + j] = -c_ij * dt
+            if offsets[0] >= 0:
+                phi[attitude + offsets[0] + j] = c_ij * w_b[j]
+            if offsets[1] >= 0:
+                phi[velocity + offsets[1] + j] = c_ij * f_b[j]
+        if offsets[2] >= 0:
+            phi[velocity + offsets[2] + i] = dt
+        tail[9 + i], tail[12 + i] = 1.0 - decay[0] * dt, 1.0 - decay[1] * dt

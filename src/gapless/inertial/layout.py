@@ -26,6 +26,8 @@ EXTRAS: Final = {
     "odometer_scale": 1,  # 1; true speed = reading * (1 + s)
 }
 """Optional blocks, their size, and their unit."""
+NAV: Final = 9
+"""Position, velocity, attitude: the rows of Phi that are more than a diagonal."""
 N_CORE: Final = 15
 LANES: Final = 8
 """A kernel runs over this many columns of a covariance at once."""
@@ -65,7 +67,7 @@ class Layout:
     @cached_property
     def n(self) -> int:
         """Number of error states."""
-        return max(block.stop for block in self.blocks.values())
+        return int(max(block.stop for block in self.blocks.values()))
 
     @property
     def width(self) -> int:

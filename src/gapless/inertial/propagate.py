@@ -14,25 +14,20 @@ from numpy.typing import NDArray
 
 from gapless._numba import inline, kernel
 from gapless.attitude import matrix_rows
-from gapless.inertial.dynamics import (
-    add_noise,
-    apply_core,
-    apply_extras,
-    attitude_rows,
-    position_rows,
-    velocity_rows,
-)
-from gapless.inertial.layout import ROW
+from gapless.inertial.covariance import add_noise, apply, apply_extras, apply_to_vector, fold
+from gapless.inertial.dynamics import transition
+from gapless.inertial.layout import NAV, ROW
 from gapless.inertial.mechanise import local_earth, mechanise
 from gapless.recording import Array
 
 LAT, LON, HEIGHT, VEL, QUAT, GYRO_BIAS, ACCEL_BIAS, EXTRA = 0, 1, 2, 3, 6, 10, 13, 16
 """Indices of the nominal state: lat, lon, h, v_n(3), q_nb(4), gyro bias(3), accel bias(3), extras."""
 TIME, PREV_THETA, PREV_VEL, PREV_DT = 0, 1, 4, 7
-COV_DT, COV_F, COV_WB, COV_FB = 8, 9, 12, 15
+COV_DT, COV_F, COV_W, COV_A = 8, 9, 12, 15
 TICK_DT, TICK_W, TICK_F = 18, 19, 22
 MEMORY_SIZE: Final = 25
-"""Indices of `memory`: clock, previous increments, sums since the last covariance and tick."""
+"""Indices of `memory`: clock, previous increments; sums since the last covariance (specific
+force in NED, rate and specific force as measured) and since the last tick (corrected)."""
 ROUND: Final = 1e-7
 """Slack [s] that keeps a sum of sample intervals from missing its period by a rounding error."""
 
@@ -45,63 +40,6 @@ def _load3(a: Array, i: int) -> tuple[Any, Any, Any]:
 @inline
 def _store3(a: Array, i: int, v: tuple[Any, Any, Any]) -> None:
     a[i], a[i + 1], a[i + 2] = v
-
-
-@inline
-def _phi(
-    rows: Any,
-    f_n: Any,
-    w_b: Any,
-    f_b: Any,
-    c: Any,
-    dt: Any,
-    noise: Any,
-    offsets: Any,
-    width: Any,
-    p: Any,
-    out: Any,
-) -> None:
-    """Out = Phi p over the interval that the sums cover."""
-    decay = (1.0 - noise[5] * dt, 1.0 - noise[6] * dt)
-    apply_core(rows[0], rows[1], rows[2], f_n, c, dt, decay, width, p, out)
-    for i in range(15, width):
-        for j in range(width):
-            out[i * ROW + j] = p[i * ROW + j]
-    if max(offsets[0], offsets[1], offsets[2]) >= 0:
-        apply_extras(offsets, w_b, f_b, c, dt, width, p, out)
-
-
-@inline
-def _covariance(
-    v: Any,
-    c: Any,
-    local: Any,
-    f_n: Any,
-    w_b: Any,
-    f_b: Any,
-    dt: Any,
-    noise: Any,
-    offsets: Any,
-    width: Any,
-    p: Any,
-    scratch: Any,
-    error: Any,
-) -> None:
-    """P = Phi P Phi' + Q; the open-loop error, a one-column matrix, goes along."""
-    rows = (position_rows(v, local), velocity_rows(v, local), attitude_rows(v, local))
-    half, back = scratch[0], scratch[1]
-    _phi(rows, f_n, w_b, f_b, c, dt, noise, offsets, width, p, half)
-    for i in range(width):
-        for j in range(width):
-            back[i * ROW + j] = half[j * ROW + i]
-    _phi(rows, f_n, w_b, f_b, c, dt, noise, offsets, width, back, p)
-    add_noise(noise, w_b, dt, p)
-    if error.size > 0:
-        for i in range(width):
-            back[i * ROW] = error[i]
-        _phi(rows, f_n, w_b, f_b, c, dt, noise, offsets, 1, back, half)
-        for i in range(width):
-            error[i] = half[i * ROW]
 
 
 @kernel
@@ -171,9 +109,13 @@ def propagate(
     dg = _load3(x, gd) if gd > 0 else (0.0, 0.0, 0.0)
     prev_theta, prev_vel, prev_dt = _load3(memory, PREV_THETA), _load3(memory, PREV_VEL), memory[PREV_DT]
     cov_dt, tick_dt = memory[COV_DT], memory[TICK_DT]
-    sum_f, sum_wb, sum_fb = _load3(memory, COV_F), _load3(memory, COV_WB), _load3(memory, COV_FB)
+    sum_f, sum_w, sum_a = _load3(memory, COV_F), _load3(memory, COV_W), _load3(memory, COV_A)
     tick_w, tick_f = _load3(memory, TICK_W), _load3(memory, TICK_F)
     local = local_earth(lat, height, v)
+    driven = max(offsets[0], offsets[1], offsets[2]) >= 0
+    decay = (noise[5], noise[6])
+    m, phi, tail = scratch[0], scratch[1, : NAV * ROW], scratch[1, NAV * ROW : (NAV + 1) * ROW]
+    phi[:], tail[:] = 0.0, 1.0
     k = first
     while k < last:
         h = dt[k]
@@ -194,16 +136,27 @@ def propagate(
         cov_dt += h
         tick_dt += h
         sum_f = (sum_f[0] + f_n[0], sum_f[1] + f_n[1], sum_f[2] + f_n[2])
-        sum_wb = (sum_wb[0] + w[0], sum_wb[1] + w[1], sum_wb[2] + w[2])
-        sum_fb = (sum_fb[0] + f[0], sum_fb[1] + f[1], sum_fb[2] + f[2])
+        sum_w = (sum_w[0] + dtheta[k, 0], sum_w[1] + dtheta[k, 1], sum_w[2] + dtheta[k, 2])
+        sum_a = (sum_a[0] + dvel[k, 0], sum_a[1] + dvel[k, 1], sum_a[2] + dvel[k, 2])
         tick_w = (tick_w[0] + w[0], tick_w[1] + w[1], tick_w[2] + w[2])
         tick_f = (tick_f[0] + f[0], tick_f[1] + f[1], tick_f[2] + f[2])
         k += 1
         stop = tick_dt >= tick - ROUND
         if cov_dt >= period - ROUND or (flush and (stop or k == last)):
-            _covariance(v, c0, local, sum_f, sum_wb, sum_fb, cov_dt, noise, offsets, width, p, scratch, error)
+            transition(v, local, sum_f, c0, sum_w, sum_a, cov_dt, decay, offsets, phi, tail)
+            apply(phi, width, p, m)
+            if driven:
+                apply_extras(phi, offsets, width, p, m)
+            fold(tail, width, m, p)
+            apply(phi, NAV, m, p)
+            if driven:
+                apply_extras(phi, offsets, NAV, m, p)
+            turn = (sum_w[0] - bg[0] * cov_dt, sum_w[1] - bg[1] * cov_dt, sum_w[2] - bg[2] * cov_dt)
+            add_noise(noise, turn, cov_dt, p)
+            if error.size > 0:
+                apply_to_vector(phi, tail, error, m)
             cov_dt = 0.0
-            sum_f = sum_wb = sum_fb = (0.0, 0.0, 0.0)
+            sum_f = sum_w = sum_a = (0.0, 0.0, 0.0)
         c, v = matrix_rows(q), v1
         local = local_earth(lat, height, v)
         if stop:
@@ -217,8 +170,8 @@ def propagate(
     _store3(memory, PREV_VEL, prev_vel)
     memory[PREV_DT], memory[COV_DT], memory[TICK_DT] = prev_dt, cov_dt, tick_dt
     _store3(memory, COV_F, sum_f)
-    _store3(memory, COV_WB, sum_wb)
-    _store3(memory, COV_FB, sum_fb)
+    _store3(memory, COV_W, sum_w)
+    _store3(memory, COV_A, sum_a)
     _store3(memory, TICK_W, tick_w)
     _store3(memory, TICK_F, tick_f)
     return k
