@@ -166,17 +166,23 @@ class Position:
         Correlation time of its error [s]: readings closer than this share their information.
     floor : float
         Least standard deviation believed [m].
+    jitter : float
+        Standard deviation of its time stamps [s]: along the track, a fix is as wrong as the
+        vehicle is fast.
     """
 
     lever: Array = field(default_factory=lambda: np.zeros(3))
     correlation: float = 0.25
     floor: float = 0.0
+    jitter: float = 0.02
 
     def observe(self, belief: Belief, reading: Reading) -> Observation:
         """Observation of the antenna's position; see `Sensor.observe`."""
         layout = belief.layout
         sd = np.maximum(reading.sd, self.floor) * _share(self.correlation, reading.interval)
-        return Observation(*position(belief.x, layout.offsets, layout.n, self.lever, reading.value, sd))
+        z, h, r = position(belief.x, layout.offsets, layout.n, self.lever, reading.value, sd)
+        v = belief.v_n * self.jitter
+        return Observation(z, h, r + v[:, None] * v)
 
 
 @dataclass(frozen=True)
@@ -191,21 +197,24 @@ class Velocity:
         Correlation time of its error [s].
     floor : float
         Least standard deviation believed [m/s].
+    jitter : float
+        Standard deviation of its time stamps [s], which counts while the vehicle accelerates.
     """
 
     lever: Array = field(default_factory=lambda: np.zeros(3))
     correlation: float = 1.2
     floor: float = 0.1
+    jitter: float = 0.02
 
     def observe(self, belief: Belief, reading: Reading) -> Observation:
         """Observation of the antenna's velocity; see `Sensor.observe`."""
         layout, none = belief.layout, np.zeros(3)
         sd = np.maximum(reading.sd, self.floor) * _share(self.correlation, reading.interval)
-        return Observation(
-            *velocity(
-                belief.x, layout.offsets, layout.n, self.lever, belief.rate, none, none, reading.value, sd
-            )
+        z, h, r = velocity(
+            belief.x, layout.offsets, layout.n, self.lever, belief.rate, none, none, reading.value, sd
         )
+        a = belief.acceleration * self.jitter
+        return Observation(z, h, r + a[:, None] * a)
 
 
 def _share(correlation: float, interval: float) -> float:

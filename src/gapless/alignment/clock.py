@@ -1,0 +1,179 @@
+"""Clock offset of a sensor against the IMU, from the shape of the motion.
+
+Within windows of some seconds the inertial velocity (or path) is exact but for a slow drift; so the
+sensor's readings, less a low polynomial, must fit the inertial curve, and they do at one shift in
+time only. The shift is found by scanning and refined by the parabola through the best three. It is
+the *equivalent instantaneous* offset: it contains half an epoch where the receiver averages.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from gapless import attitude
+from gapless.recording import Array, Imu, Trajectory
+
+STEP = 0.02
+"""Spacing of the scan [s]."""
+
+
+class Offset(NamedTuple):
+    """What must be added to a sensor's stamps to land on the IMU clock.
+
+    Parameters
+    ----------
+    value : float
+        [s]
+    sd : float
+        One standard deviation [s]; inf where the motion says nothing.
+    gain : float
+        Misfit without the offset over misfit with it (RMS ratio).
+    epochs : int
+        Readings used.
+    """
+
+    value: float
+    sd: float
+    gain: float
+    epochs: int
+
+
+class Curve(NamedTuple):
+    """A motion known but for a slow drift.
+
+    Parameters
+    ----------
+    time : ndarray, shape (n,)
+        Increasing [s].
+    value : ndarray, shape (n, d)
+        Inertial velocity or path.
+    """
+
+    time: Array
+    value: Array
+
+
+def offset(curve: Curve, time: Array, value: Array, degree: int, span: float = 1.5, window: float = 20.0, correlation: float = 1.0) -> Offset:
+    """Shift in time at which readings fit a curve.
+
+    Parameters
+    ----------
+    curve : Curve
+        Inertial motion on the IMU clock.
+    time : ndarray, shape (k,)
+        Stamps of the readings on their own clock [s].
+    value : ndarray, shape (k, d)
+        Readings.
+    degree : int
+        Of the polynomial in time that each window may drift by: 1 for velocity, 2 for a path.
+    span : float
+        Largest offset looked for [s].
+    window : float
+        Length of a window [s].
+    correlation : float
+        Correlation time of the readings' errors [s], for the standard deviation.
+
+    Returns
+    -------
+    Offset
+        sd from the curvature of the summed misfit.
+    """
+    shifts = np.arange(-span, span + 0.5 * STEP, STEP)
+    inside = (time > curve.time[0] + span) & (time < curve.time[-1] - span)
+    time, value = time[inside], value[inside]
+    misfits, counts = [], []
+    for rows in _windows(time, curve.time, window, span):
+        misfits.append(_misfit(curve, time[rows], value[rows], shifts, degree))
+        counts.append(len(rows))
+    if not misfits:
+        return Offset(0.0, np.inf, 1.0, 0)
+    share = min(1.0, float(np.median(np.diff(time))) / correlation)
+    return _best(shifts, np.array(misfits), np.array(counts, float), share)
+
+
+def _windows(time: Array, clock: Array, window: float, span: float) -> list[Array]:
+    """Rows of each window that holds enough readings and no gap of the IMU."""
+    rows = []
+    for start in np.arange(time[0], time[-1] - 0.5 * window, window) if len(time) else []:
+        index = np.flatnonzero((time >= start) & (time < start + window))
+        a, b = np.searchsorted(clock, [start - span, start + window + span])
+        if len(index) >= 8 and b - a > 2 and np.max(np.diff(clock[a:b])) < 1.0:
+            rows.append(index)
+    return rows
+
+
+def _misfit(curve: Curve, time: Array, value: Array, shifts: Array, degree: int) -> Array:
+    """Mean squared misfit of one window at every shift, the polynomial taken out."""
+    u = (time - time.mean()) / max(np.ptp(time), 1e-9)
+    q, _ = np.linalg.qr(np.vander(u, degree + 1))
+    at = (time[:, None] + shifts[None, :]).ravel()
+    total = np.zeros(len(shifts))
+    for axis in range(value.shape[1]):
+        model = np.interp(at, curve.time, curve.value[:, axis]).reshape(len(time), -1)
+        left = value[:, axis : axis + 1] - model
+        left -= q @ (q.T @ left)
+        total += np.mean(left**2, axis=0)
+    return total
+
+
+def _best(shifts: Array, misfits: Array, counts: Array, share: float) -> Offset:
+    """Least weighted misfit over the windows; windows that never fit weigh little."""
+    noise = misfits.min(axis=1)
+    scale = noise + np.median(noise)
+    weight = counts / scale
+    cost = weight @ misfits / weight.sum()
+    k = int(np.argmin(cost))
+    if k in (0, len(shifts) - 1):
+        return Offset(float(shifts[k]), np.inf, 1.0, int(counts.sum()))
+    bend = cost[k - 1] - 2.0 * cost[k] + cost[k + 1]
+    value = float(shifts[k] + 0.5 * STEP * (cost[k - 1] - cost[k + 1]) / max(bend, 1e-30))
+    independent = counts.sum() * share
+    curvature = bend / STEP**2
+    sd = float(np.sqrt(2.0 * cost[k] / max(curvature * independent, 1e-30)))
+    zero = float(np.interp(0.0, shifts, cost))
+    return Offset(value, sd, float(np.sqrt(zero / cost[k])), int(counts.sum()))
+
+
+def velocity_curve(path: Trajectory, accel_bias: Array, imu: Imu) -> Curve:
+    """Horizontal inertial velocity but for a slow drift: specific force turned by a known attitude.
+
+    Parameters
+    ----------
+    path : Trajectory
+        Attitude over time.
+    accel_bias : ndarray, shape (n, 3)
+        Accelerometer bias at the path's times [m/s^2].
+    imu : Imu
+
+    Returns
+    -------
+    Curve
+        North, east [m/s] at the path's times; no correction of a filter is in it.
+    """
+    clock = np.concatenate([[imu.time[0] - imu.dt[0]], imu.time])
+    gained = np.concatenate([np.zeros((1, 3)), np.cumsum(imu.dvel, axis=0)])
+    spent = np.interp(path.time, clock, np.concatenate([[0.0], np.cumsum(imu.dt)]))
+    felt = np.column_stack([np.interp(path.time, clock, gained[:, i]) for i in range(3)])
+    step = np.diff(felt, axis=0) - accel_bias[:-1] * np.diff(spent)[:, None]
+    c = attitude.to_matrix(attitude.from_euler(path.euler))
+    turned = 0.5 * np.einsum("kij,kj->ki", c[:-1] + c[1:], step)[:, :2]
+    return Curve(path.time, np.concatenate([np.zeros((1, 2)), np.cumsum(turned, axis=0)]))
+
+
+def path_curve(path: Trajectory) -> Curve:
+    """Horizontal path but for a slow drift: the integral of a filter's velocity.
+
+    Parameters
+    ----------
+    path : Trajectory
+
+    Returns
+    -------
+    Curve
+        North, east [m].
+    """
+    v = path.v_n[:, :2]
+    step = 0.5 * (v[1:] + v[:-1]) * np.diff(path.time)[:, None]
+    return Curve(path.time, np.concatenate([np.zeros((1, 2)), np.cumsum(step, axis=0)]))

@@ -1,0 +1,185 @@
+"""A navigator's settings from a recipe and from what was decided."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+
+import numpy as np
+
+from gapless.alignment.coarse import Aligner
+from gapless.inertial.layout import Layout
+from gapless.measurements.base import Constraint, Sensor
+from gapless.measurements.gnss import Position, Velocity
+from gapless.measurements.nonholonomic import NonHolonomic
+from gapless.measurements.odometer import Odometer
+from gapless.measurements.stillness import Stillness
+from gapless.navigator import Settings
+from gapless.recording import Array, Recording
+from gapless.sensors import grade
+from gapless.systems.recipe import Imu, System
+from gapless.units import DEG
+
+
+def settings(
+    system: System,
+    recording: Recording,
+    offsets: Mapping[str, float],
+    mounting: tuple[Array, Array],
+    row: float = 0.1,
+) -> Settings:
+    """Settings of a navigator.
+
+    Parameters
+    ----------
+    system : System
+    recording : Recording
+        For its lever arm, and for whether there is an odometer.
+    offsets : mapping of str to float
+        Clock offset of each channel [s].
+    mounting : tuple of 2 ndarray, shape (2,)
+        Pitch and yaw of the car's forward axis in the box, and their standard deviations [rad].
+    row : float
+        Time between journal rows [s].
+
+    Returns
+    -------
+    Settings
+    """
+    imu = budget(system.imu)
+    names = states(system, recording)
+    angles, angle_sd = mounting
+    return Settings(
+        layout=Layout(names),
+        noise=imu["noise"],
+        initial_sd={
+            "attitude": system.alignment.tilt_sd * DEG,
+            "gyro_bias": imu["gyro_bias_sd"],
+            "accel_bias": imu["accel_bias_sd"],
+            "gyro_scale": imu["gyro_scale_sd"],
+            "accel_scale": imu["accel_scale_sd"],
+            "gravity": system.imu.gravity_sd,
+            "lever_arm": 1.0,
+            "mounting": angle_sd,
+            "axle": system.nonholonomic.axle_sd,
+            "odometer_scale": system.odometer.scale_sd,
+        },
+        initial=_initial(names, angles, system, recording),
+        sensors=_sensors(system, recording, angles),
+        constraints=_constraints(system, angles),
+        aligner=Aligner(float(angles[1]), system.alignment.min_speed, system.alignment.window),
+        tick=system.filter.tick,
+        period=system.filter.covariance_period,
+        row=row,
+        lateness=max(0.0, -min([0.0, *offsets.values()])) + 0.05 if min([0.0, *offsets.values()]) < 0 else 0.0,
+        open_loop=system.filter.correction == "feedforward",
+    )
+
+
+def states(system: System, recording: Recording) -> tuple[str, ...]:
+    """Optional state blocks: those of the recipe, and those that its sensors and constraints need.
+
+    Parameters
+    ----------
+    system : System
+    recording : Recording
+
+    Returns
+    -------
+    tuple of str
+    """
+    names = list(system.filter.states)
+    car = "nonholonomic" in system.constraints
+    wheel = "odometer" in system.sensors and recording.odometer is not None
+    wanted = ["mounting"] * (car or wheel) + ["axle"] * car + ["odometer_scale"] * wheel
+    return (*names, *(name for name in wanted if name not in names))
+
+
+def budget(imu: Imu) -> dict[str, Array]:
+    """Process noise and turn-on errors in SI units, from a named grade or from the recipe.
+
+    Parameters
+    ----------
+    imu : Imu
+
+    Returns
+    -------
+    dict of str to ndarray
+        "noise" as `propagate` takes it, then the standard deviations of the turn-on errors.
+    """
+    if not imu.grade:
+        noise = [imu.gyro_noise * DEG, imu.accel_noise, imu.gyro_walk * DEG, imu.accel_walk, imu.turn]
+        bias = (imu.gyro_bias_sd * DEG, imu.accel_bias_sd, imu.gyro_scale_sd, imu.accel_scale_sd)
+    else:
+        g = grade(imu.grade)
+        # what moves in run is a random walk with the same power over the correlation time
+        gyro = math.hypot(g.gyro_walk, g.gyro_instability * math.sqrt(2.0 / g.gyro_instability_tau))
+        accel = math.hypot(g.accel_walk, g.accel_instability * math.sqrt(2.0 / g.accel_instability_tau))
+        turn = math.hypot(g.gyro_scale_sd, g.misalignment_sd) * 0.1
+        noise = [g.gyro_noise, g.accel_noise, gyro, accel, turn]
+        bias = (
+            math.hypot(g.gyro_bias_sd, g.gyro_instability),
+            math.hypot(g.accel_bias_sd, g.accel_instability),
+            g.gyro_scale_sd,
+            g.accel_scale_sd,
+        )
+    names = ("gyro_bias_sd", "accel_bias_sd", "gyro_scale_sd", "accel_scale_sd")
+    found = {name: np.asarray(value) for name, value in zip(names, bias, strict=True)}
+    return found | {"noise": np.array([*np.square(noise), 0.0, 0.0])}
+
+
+def _initial(
+    names: tuple[str, ...], angles: Array, system: System, recording: Recording
+) -> dict[str, Array]:
+    known = {
+        "mounting": angles,
+        "axle": np.array([system.nonholonomic.axle]),
+        "lever_arm": lever_arm(system, recording),
+    }
+    return {name: value for name, value in known.items() if name in names}
+
+
+def lever_arm(system: System, recording: Recording) -> Array:
+    """Antenna from the IMU: the recipe's word, else the recording's.
+
+    Parameters
+    ----------
+    system : System
+    recording : Recording
+
+    Returns
+    -------
+    ndarray, shape (3,)
+        FRD [m].
+    """
+    given = system.gnss.lever_arm
+    return recording.lever_arm if given is None else np.array(given)
+
+
+def _sensors(system: System, recording: Recording, angles: Array) -> dict[str, Sensor]:
+    lever, use = lever_arm(system, recording), system.gnss
+    known: dict[str, Sensor] = {
+        "position": Position(lever, use.position_correlation, use.position_floor, use.jitter),
+        "velocity": Velocity(lever, use.velocity_correlation, use.velocity_floor, use.jitter),
+        "odometer": Odometer(
+            system.odometer.sd, system.odometer.correlation, (float(angles[0]), float(angles[1]))
+        ),
+    }
+    return {name: known[name] for name in system.sensors if name != "odometer" or recording.odometer is not None}
+
+
+def _constraints(system: System, angles: Array) -> dict[str, Constraint]:
+    z, n = system.zero_velocity, system.nonholonomic
+    known: dict[str, Constraint] = {
+        "zero_velocity": Stillness(z.sd, z.rate_sd * DEG, z.odds, z.hold),
+        "nonholonomic": NonHolonomic(
+            n.lateral,
+            n.vertical,
+            n.turn,
+            n.min_speed,
+            n.axle,
+            (float(angles[0]), float(angles[1])),
+            n.interval,
+        ),
+    }
+    return {name: known[name] for name in system.constraints}

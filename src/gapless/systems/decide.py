@@ -1,0 +1,231 @@
+"""What fusion must know before it starts, found in a first pass over the past, with its evidence."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from msgspec.structs import replace
+
+from gapless import earth
+from gapless.alignment.clock import Curve, Offset, offset, path_curve, velocity_curve
+from gapless.feed import events
+from gapless.navigator import Navigator
+from gapless.recording import Array, Recording, Trajectory
+from gapless.solution import Decision
+from gapless.systems.build import lever_arm, settings
+from gapless.systems.recipe import System
+from gapless.units import DEG
+
+CHANNELS = ("position", "velocity", "odometer")
+ENOUGH = 600.0
+"""Seconds of navigation after which a first pass learns little more."""
+JITTER = (0.3, 0.1, 0.05, 0.05)
+"""How far stamps are trusted from pass to pass [s]: a clock still unknown must not bend the path."""
+
+
+class Mounting(NamedTuple):
+    """Pitch and yaw of the car's forward axis in the box.
+
+    Parameters
+    ----------
+    angles, sd : ndarray, shape (2,)
+        [rad]
+    """
+
+    angles: Array
+    sd: Array
+
+
+@dataclass(frozen=True)
+class Decided:
+    """Decisions, as numbers for the navigator and as lines for the user.
+
+    Parameters
+    ----------
+    offsets : dict of str to float
+        Clock offset by channel [s].
+    mounting : Mounting
+    decisions : tuple of Decision
+    """
+
+    offsets: dict[str, float]
+    mounting: Mounting
+    decisions: tuple[Decision, ...]
+
+
+def decide(recording: Recording, system: System, horizon: float = np.inf) -> Decided:
+    """Settle clocks and mounting from what was logged before a horizon.
+
+    Parameters
+    ----------
+    recording : Recording
+        GNSS epochs that are to be withheld already taken out.
+    system : System
+    horizon : float
+        Nothing logged later is looked at [s on the IMU clock].
+
+    Returns
+    -------
+    Decided
+    """
+    past = recording if horizon == np.inf else recording.slice(-np.inf, horizon)
+    passes = _FirstPass(past, system)
+    passes.run()
+    return Decided(passes.offsets, passes.mounting, (*passes.clock_decisions(), *passes.mounting_decisions()))
+
+
+class _FirstPass:
+    """Navigates the past until its clock offsets settle."""
+
+    def __init__(self, past: Recording, system: System) -> None:
+        self.past, self.system = past, system
+        self.given = {c: v for c in CHANNELS if (v := getattr(system.clock, c)) != "auto"}
+        self.offsets = dict.fromkeys(CHANNELS, 0.0) | self.given
+        self.found: dict[str, Offset] = {}
+        self.mounting = _given_mounting(system)
+        self.span = 0.0
+        self.learned = False
+
+    def run(self) -> None:
+        """Up to four passes; each starts from the offsets of the one before."""
+        for jitter in JITTER:
+            navigator = self._navigate(jitter)
+            if len(navigator.journal.times) < 300:
+                return
+            if self._learn(navigator) < 0.02 and jitter <= 0.1:
+                return
+
+    def _navigate(self, jitter: float) -> Navigator:
+        system = replace(self.system, gnss=replace(self.system.gnss, jitter=jitter))
+        navigator = Navigator(settings(system, self.past, self.offsets, _given_mounting(system)))
+        for event in events(self.past, self.offsets, thin=0.45):
+            navigator.step(event)
+            if navigator.aligned and navigator.time > navigator.journal.alignments[0][0] + ENOUGH:
+                break
+        return navigator
+
+    def _learn(self, navigator: Navigator) -> float:
+        path, (blocks, sds) = navigator.journal.trajectory(), navigator.journal.blocks()
+        self.span = float(path.time[-1] - path.time[0])
+        self._learn_mounting(blocks, sds)
+        before = dict(self.offsets)
+        for channel, estimate in self._estimates(path, blocks).items():
+            self.found[channel] = estimate
+            settled = abs(estimate.value) > 2.0 * estimate.sd
+            self.offsets[channel] = estimate.value if settled else 0.0
+        return max(abs(self.offsets[c] - before[c]) for c in CHANNELS)
+
+    def _estimates(self, path: Trajectory, blocks: dict[str, Array]) -> dict[str, Offset]:
+        gnss, odometer = self.past.gnss, self.past.odometer
+        found = {}
+        fixed = np.isfinite(gnss.lla).all(axis=1)
+        heard = np.isfinite(gnss.v_n).all(axis=1)
+        if "velocity" not in self.given and heard.any():
+            curve = velocity_curve(path, blocks["accel_bias"], self.past.imu)
+            found["velocity"] = offset(curve, gnss.time[heard], gnss.v_n[heard, :2], 1)
+        if "position" not in self.given and fixed.any():
+            here = earth.lla_to_ned(gnss.lla[fixed], gnss.lla[fixed][0])[:, :2]
+            window = min(100.0, self.span)
+            found["position"] = offset(
+                path_curve(path), gnss.time[fixed], here, 1, window=window, correlation=5.0
+            )
+        if odometer is not None and "odometer" not in self.given:
+            speed = np.hypot(path.v_n[:, 0], path.v_n[:, 1])[:, None]
+            found["odometer"] = offset(Curve(path.time, speed), odometer.time, odometer.speed[:, None], 1)
+        return found
+
+    def _learn_mounting(self, blocks: dict[str, Array], sds: dict[str, Array]) -> None:
+        if "mounting" not in blocks or self._mounting_given():
+            return
+        sd = np.maximum(2.0 * sds["mounting"][-1], 0.5 * DEG)
+        prior = _given_mounting(self.system)
+        self.mounting = Mounting(blocks["mounting"][-1].copy(), np.minimum(sd, prior.sd))
+        self.learned = True
+
+    def _mounting_given(self) -> bool:
+        return self.system.mounting.pitch != "auto" and self.system.mounting.yaw != "auto"
+
+    def clock_decisions(self) -> list[Decision]:
+        """One decision for each channel that the recording has."""
+        present = {"position": True, "velocity": self.past.gnss.has_velocity}
+        present["odometer"] = self.past.odometer is not None
+        return [self._clock_decision(c) for c in CHANNELS if present[c]]
+
+    def _clock_decision(self, channel: str) -> Decision:
+        name, value = f"clock offset, {channel}", self.offsets[channel]
+        if channel in self.given:
+            return Decision(name, value, "s", "user", "given in the configuration")
+        found = self.found.get(channel)
+        if found is None or not np.isfinite(found.sd):
+            return Decision(name, value, "s", "default", "the motion says too little; stamps taken as logged")
+        evidence = (
+            f"{found.epochs} readings against the inertial motion of {self.span:.0f} s; "
+            f"misfit {100.0 * (1.0 - 1.0 / found.gain):.1f} % less than without"
+        )
+        if value == 0.0:
+            evidence = f"found {found.value:+.3f} s, within two standard deviations of none; " + evidence
+        return Decision(name, round(value, 4), "s", "data", evidence, found.sd)
+
+    def mounting_decisions(self) -> list[Decision]:
+        """Pitch and yaw of the car's forward axis in the box."""
+        if not ({"nonholonomic"} & set(self.system.constraints)):
+            return []
+        angles = tuple(round(float(a) / DEG, 3) for a in self.mounting.angles)
+        sd = float(np.max(self.mounting.sd)) / DEG
+        name = "mounting pitch and yaw, first estimate"
+        if self._mounting_given():
+            return [Decision(name, angles, "deg", "user", "given in the configuration", sd)]
+        if not self.learned:
+            return [Decision(name, angles, "deg", "default", "too little motion; a state from zero", sd)]
+        evidence = f"where the car does not slip over {self.span:.0f} s; states of the filter from here on"
+        return [Decision(name, angles, "deg", "data", evidence, sd)]
+
+
+def _given_mounting(system: System) -> Mounting:
+    m = system.mounting
+    angles = np.array([0.0 if a == "auto" else a * DEG for a in (m.pitch, m.yaw)])
+    return Mounting(angles, np.array([m.pitch_sd, m.yaw_sd]) * DEG)
+
+
+def static_decisions(recording: Recording, system: System) -> list[Decision]:
+    """What is settled without navigating: sensors, noise, lever arm.
+
+    Parameters
+    ----------
+    recording : Recording
+    system : System
+
+    Returns
+    -------
+    list of Decision
+    """
+    imu, gnss = recording.imu, recording.gnss
+    lever = tuple(float(a) for a in lever_arm(system, recording))
+    rate = 1.0 / float(np.median(np.diff(gnss.time))) if len(gnss) > 1 else 0.0
+    grade = system.imu.grade or "default"
+    source = "user" if system.imu.grade or system.imu != type(system.imu)() else "default"
+    noise = "named grade" if system.imu.grade else "suits consumer MEMS with biases of 0.5 m/s^2 and 0.3 deg/s"
+    found = [
+        Decision("IMU rate", round(imu.rate, 2), "Hz", "data", f"{len(imu)} samples, median interval"),
+        Decision("GNSS rate", round(rate, 2), "Hz", "data", f"{len(gnss)} fixes, {_kinds(recording)}"),
+        Decision("process noise", grade, "", source, noise),
+    ]
+    if system.gnss.lever_arm is not None:
+        return [*found, Decision("antenna lever arm", lever, "m", "user", "given in the configuration")]
+    if np.any(recording.lever_arm):
+        return [*found, Decision("antenna lever arm", lever, "m", "recording", "stated by the recording")]
+    return [*found, Decision("antenna lever arm", lever, "m", "default", "none is stated; taken as zero")]
+
+
+def _kinds(recording: Recording) -> str:
+    words = {1: "single point", 2: "differential", 4: "RTK fixed", 5: "RTK float"}
+    codes, counts = np.unique(recording.gnss.fix, return_counts=True)
+    named = [f"{words.get(int(c), 'other')} {100 * n / counts.sum():.0f} %" for c, n in zip(codes, counts, strict=True)]
+    velocity = "with velocity" if recording.gnss.has_velocity else "without velocity"
+    return f"{', '.join(named)}, {velocity}"
+
+
+__all__ = ["CHANNELS", "Decided", "Mounting", "decide", "static_decisions"]

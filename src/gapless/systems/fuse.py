@@ -1,0 +1,167 @@
+"""A recording in, a solution out: decide, fold, collect."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+
+import numpy as np
+
+from gapless.errors import AlignmentError
+from gapless.events import Event, ImuBlock
+from gapless.feed import events
+from gapless.journal import Journal
+from gapless.navigator import Navigator
+from gapless.recording import Recording
+from gapless.scenarios import Outage, withhold
+from gapless.solution import Decision, Solution
+from gapless.systems.build import settings
+from gapless.systems.decide import Decided, decide, static_decisions
+from gapless.systems.recipe import System
+
+Progress = Callable[[float], None]
+"""Told the time that navigation has reached [s after the first sample]."""
+
+
+def fuse(
+    recording: Recording,
+    system: System | None = None,
+    outages: Iterable[Outage] = (),
+    rate: float = 10.0,
+    causal: bool = False,
+    progress: Progress | None = None,
+) -> Solution:
+    """Navigate a recording.
+
+    Parameters
+    ----------
+    recording : Recording
+    system : System, optional
+        The recipe; "constraints" if not given.
+    outages : iterable of Outage
+        Stretches in which GNSS is withheld.
+    rate : float
+        Rows of the solution per second.
+    causal : bool
+        Find clock offsets and mounting on the way, from the past of each moment only. Otherwise
+        they are found in a first pass over what was logged before the first outage.
+    progress : callable, optional
+
+    Returns
+    -------
+    Solution
+        Row by row from no later sample than its own; what a first pass decided is in `decisions`.
+
+    Raises
+    ------
+    AlignmentError
+        If the vehicle never moved fast enough for a heading.
+    """
+    system = System() if system is None else system
+    outages = tuple(outages)
+    open_sky = withhold_from(recording, outages)
+    first = recording.start + min((o.start for o in outages), default=np.inf)
+    if causal:
+        navigator, decided = _on_the_way(open_sky, system, rate, progress)
+    else:
+        decided = decide(open_sky, system, first)
+        navigator = Navigator(settings(system, open_sky, decided.offsets, decided.mounting, 1.0 / rate))
+        _fold(navigator, events(open_sky, decided.offsets), recording.start, progress)
+    return _collect(recording, system, outages, navigator, decided)
+
+
+def withhold_from(recording: Recording, outages: Iterable[Outage]) -> Recording:
+    """The recording without the GNSS epochs of the outages.
+
+    Parameters
+    ----------
+    recording : Recording
+    outages : iterable of Outage
+
+    Returns
+    -------
+    Recording
+    """
+    from dataclasses import replace
+
+    return replace(recording, gnss=withhold(recording.gnss, tuple(outages), recording.start))
+
+
+def _fold(navigator: Navigator, feed: Iterable[Event], start: float, progress: Progress | None) -> None:
+    told = 0.0
+    for event in feed:
+        navigator.step(event)
+        if progress is not None and isinstance(event, ImuBlock) and navigator.time - start > told + 5.0:
+            told = navigator.time - start
+            progress(told)
+
+
+STAGES = (60.0, 120.0, 240.0, 480.0)
+"""When a causal run decides anew [s after the first sample]."""
+
+
+def _on_the_way(
+    recording: Recording, system: System, rate: float, progress: Progress | None
+) -> tuple[Navigator, Decided]:
+    """Decide at fixed data times from the past alone; the navigator goes on with what was decided."""
+    cuts = [recording.start + s for s in STAGES if s < recording.duration]
+    decided = decide(recording, system, recording.start)
+    longest = {"position": -1.5, "velocity": -1.5}
+    navigator = Navigator(settings(system, recording, longest, decided.mounting, 1.0 / rate))
+    for begin, end in zip([-np.inf, *cuts], [*cuts, np.inf], strict=True):
+        _fold(navigator, events(recording, decided.offsets, begin, end), recording.start, progress)
+        if np.isfinite(end):
+            decided = decide(recording, system, end)
+    return navigator, decided
+
+
+def _collect(
+    recording: Recording,
+    system: System,
+    outages: tuple[Outage, ...],
+    navigator: Navigator,
+    decided: Decided,
+) -> Solution:
+    journal = navigator.journal
+    if not journal.times:
+        raise AlignmentError(
+            f"{recording.name}: GNSS never showed three fixes in a row faster than "
+            f"{system.alignment.min_speed:g} m/s, so there is no heading to start from; "
+            "lower alignment.min_speed in the configuration"
+        )
+    states, sds = journal.blocks()
+    return Solution(
+        name=recording.name,
+        system=system.name,
+        trajectory=journal.trajectory(),
+        states=states,
+        states_sd=sds,
+        innovations=journal.innovations(),
+        decisions=(
+            *static_decisions(recording, system),
+            *decided.decisions,
+            *_alignments(journal, recording.start),
+            *_stops(journal),
+        ),
+        outages=tuple((o.start, o.end) for o in outages),
+        start=recording.start,
+        notes=recording.notes,
+    )
+
+
+def _alignments(journal: Journal, start: float) -> list[Decision]:
+    return [
+        Decision("alignment", round(time - start, 2), "s after the first sample", "data", evidence)
+        for time, evidence in journal.alignments
+    ]
+
+
+def _stops(journal: Journal) -> list[Decision]:
+    """Stationary stretches, from the zero-velocity updates."""
+    channel = journal.channels.get("zero_velocity")
+    if channel is None or not channel.time:
+        return []
+    times = np.array(channel.time)
+    edges = np.flatnonzero(np.diff(times) > 2.0)
+    total = float(np.sum(np.minimum(np.diff(times), 0.3)))
+    evidence = f"{len(times)} zero-velocity updates; spreads like this drive's own stops, not like its driving"
+    return [Decision("stationary stretches", float(len(edges) + 1), f"in all {total:.0f} s", "data", evidence)]
