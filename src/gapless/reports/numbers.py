@@ -58,7 +58,8 @@ def number(value: float, unit: str = "", digits: int = 3) -> str:
     """
     if not math.isfinite(value):
         return DASH
-    decimals = 0 if value == 0.0 else digits - 1 - math.floor(math.log10(abs(value)))
+    shown = abs(float(f"{value:.{digits - 1}e}"))
+    decimals = digits - 1 - math.floor(math.log10(shown)) if shown >= 1e-9 else 0
     return _signed(value, min(max(decimals, 0), 9)) + (f"\u00a0{unit}" if unit else "")
 
 

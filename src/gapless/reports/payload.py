@@ -39,13 +39,25 @@ def payload(solution: Solution, recording: Recording, scores: Scores | None) -> 
     dict
         JSON-able; arrays are lists of rounded numbers, None where unknown.
     """
+    drawn = charts(solution, scores)
     end = float(solution.trajectory.time[-1]) - solution.start
     return {
         "span": [rounded(solution.trajectory.time[:1] - solution.start, 2)[0], round(end, 2)],
         "outages": [[round(a, 3), round(b, 3)] for a, b in solution.outages],
         "track": _track(solution, recording, scores),
-        "charts": charts(solution, scores),
+        "times": _shared_times(drawn),
+        "charts": drawn,
     }
+
+
+def _shared_times(drawn: list[dict[str, Any]]) -> list[list[float]]:
+    """Times of all charts, each list once; `t` of a chart becomes the index of its list."""
+    times: list[list[float]] = []
+    for one in drawn:
+        if one["t"] not in times:
+            times.append(one["t"])
+        one["t"] = times.index(one["t"])
+    return times
 
 
 def rounded(values: Array, decimals: int) -> list[float | None]:

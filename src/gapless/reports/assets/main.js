@@ -7,6 +7,7 @@ for (const button of document.querySelectorAll("[data-zoom]")) button.addEventLi
 const charts = document.getElementById("charts");
 let group = null, grid = null;
 for (const spec of data.charts) {
+  spec.t = data.times[spec.t];
   if (spec.group !== group) {
     group = spec.group;
     grid = element("div", "", "group");
