@@ -81,15 +81,17 @@ def sculling(dtheta: Three, dvel: Three, prev_theta: Three, prev_vel: Three, fac
     Returns
     -------
     tuple of 3
-        With the rotation term of half the interval and the sculling term.
+        With the sculling term and the rotation term to third order, exact to there for constant
+        rates (without its third order a turn of 15 deg/s at 3 m/s^2 costs 1 um/s^2 at 200 Hz).
     """
     r = cross(dtheta, dvel)
+    s = cross(dtheta, r)
     a = cross(prev_theta, dvel)
     b = cross(prev_vel, dtheta)
     return (
-        dvel[0] + 0.5 * r[0] + factor * (a[0] + b[0]),
-        dvel[1] + 0.5 * r[1] + factor * (a[1] + b[1]),
-        dvel[2] + 0.5 * r[2] + factor * (a[2] + b[2]),
+        dvel[0] + 0.5 * r[0] + (1.0 / 6.0) * s[0] + factor * (a[0] + b[0]),
+        dvel[1] + 0.5 * r[1] + (1.0 / 6.0) * s[1] + factor * (a[1] + b[1]),
+        dvel[2] + 0.5 * r[2] + (1.0 / 6.0) * s[2] + factor * (a[2] + b[2]),
     )
 
 

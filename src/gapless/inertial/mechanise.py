@@ -35,8 +35,11 @@ def rotate(c: Nine, v: Three) -> Three:
 
 
 @inline
-def local_earth(lat: Any, height: Any, v: Three) -> tuple[Any, Any, Any, Any, Any, Three, Three]:
-    """What the earth is like here: sin, cos of latitude, R_M + h, R_N + h, gravity, omega_ie, omega_en.
+def local_earth(lat: Any, height: Any, v: Three, dt: Any) -> tuple[Any, Any, Any, Any, Any, Three, Three]:
+    """What the earth is like half a sample ahead.
+
+    Taken where the sample starts, earth rate and gravity would be late by half a sample: 1e-9 rad
+    and 4 mm after 30 min on a motorway.
 
     Parameters
     ----------
@@ -44,13 +47,17 @@ def local_earth(lat: Any, height: Any, v: Three) -> tuple[Any, Any, Any, Any, An
         [rad], [m]
     v : tuple of 3
         Velocity north, east, down [m/s].
+    dt : float
+        Length of the sample [s].
 
     Returns
     -------
     sl, cl, r_m, r_n, g : float
+        Sine and cosine of latitude, R_M + h and R_N + h [m], gravity [m/s^2].
     w_ie, w_en : tuple of 3
         Earth rate and transport rate in NED [rad/s].
     """
+    lat, height = lat + 0.5 * dt * v[0] / earth.SEMI_MAJOR, height - 0.5 * dt * v[2]
     sl, cl = np.sin(lat), np.cos(lat)
     r_m, r_n = earth.radii(sl)
     r_m, r_n = r_m + height, r_n + height
@@ -60,8 +67,8 @@ def local_earth(lat: Any, height: Any, v: Three) -> tuple[Any, Any, Any, Any, An
 
 
 @inline
-def velocity_step(v: Three, f_n: Three, w_ie: Three, w_en: Three, g: Three, dt: Any) -> tuple[Three, Three]:
-    """Velocity after a sample, and the specific-force increment in the middle navigation frame.
+def velocity_step(v: Three, f_n: Three, local: Any, dg: Three, dt: Any) -> tuple[Three, Three, Three, Three]:
+    """Velocity after a sample.
 
     Parameters
     ----------
@@ -69,34 +76,45 @@ def velocity_step(v: Three, f_n: Three, w_ie: Three, w_en: Three, g: Three, dt: 
         Velocity before [m/s].
     f_n : tuple of 3
         Specific-force increment in the navigation frame of the start [m/s].
-    w_ie, w_en : tuple of 3
-        Earth rate, transport rate [rad/s].
-    g : tuple of 3
-        Gravity, NED [m/s^2].
+    local : tuple
+        `local_earth` of the sample.
+    dg : tuple of 3
+        Gravity disturbance, NED [m/s^2].
     dt : float
         [s]
 
     Returns
     -------
-    v_new, f_mid : tuple of 3
-        Coriolis at mid-point velocity; the frame's own turn over half the sample is in f_mid.
+    v_new, v_mid : tuple of 3
+        After the sample and half-way [m/s].
+    w_in : tuple of 3
+        Rate of the navigation frame against inertial space, half-way [rad/s].
+    f_mid : tuple of 3
+        Specific-force increment in the navigation frame half-way [m/s].
+
+    Notes
+    -----
+    Coriolis is taken at the mid-point velocity, and so is the transport rate in it: otherwise a
+    closed lap leaves pi v^2 tan(lat) dt / 2R. That velocity holds half a Coriolis itself, or
+    (2 omega_ie)^2 v dt / 2 remains, 1 nm/s^2 and 2 mm of height after 30 min on a motorway.
     """
+    sl, cl, r_m, r_n, g, w_ie, w_en = local
     w_in = (w_ie[0] + w_en[0], w_ie[1] + w_en[1], w_ie[2] + w_en[2])
     turn = cross(w_in, f_n)
     half = 0.5 * dt
     f = (f_n[0] - half * turn[0], f_n[1] - half * turn[1], f_n[2] - half * turn[2])
+    gain = (f[0] + dg[0] * dt, f[1] + dg[1] * dt, f[2] + (dg[2] + g) * dt)
+    c = cross((w_ie[0] + w_in[0], w_ie[1] + w_in[1], w_ie[2] + w_in[2]), v)
     mid = (
-        v[0] + 0.5 * (f[0] + g[0] * dt),
-        v[1] + 0.5 * (f[1] + g[1] * dt),
-        v[2] + 0.5 * (f[2] + g[2] * dt),
+        v[0] + 0.5 * gain[0] - half * c[0],
+        v[1] + 0.5 * gain[1] - half * c[1],
+        v[2] + 0.5 * gain[2] - half * c[2],
     )
-    coriolis = cross((2.0 * w_ie[0] + w_en[0], 2.0 * w_ie[1] + w_en[1], 2.0 * w_ie[2] + w_en[2]), mid)
-    new = (
-        v[0] + f[0] + dt * (g[0] - coriolis[0]),
-        v[1] + f[1] + dt * (g[1] - coriolis[1]),
-        v[2] + f[2] + dt * (g[2] - coriolis[2]),
-    )
-    return new, f
+    w_en = earth.transport_rate(mid[0], mid[1], sl / cl, r_m, r_n)
+    w_in = (w_ie[0] + w_en[0], w_ie[1] + w_en[1], w_ie[2] + w_en[2])
+    c = cross((w_ie[0] + w_in[0], w_ie[1] + w_in[1], w_ie[2] + w_in[2]), mid)
+    new = (v[0] + gain[0] - dt * c[0], v[1] + gain[1] - dt * c[1], v[2] + gain[2] - dt * c[2])
+    return new, mid, w_in, f
 
 
 @inline
@@ -150,7 +168,7 @@ def mechanise(
     v, q, c : tuple
         Velocity [m/s], q_nb and its matrix before.
     local : tuple
-        `local_earth` there.
+        `local_earth` of the sample.
     dg : tuple of 3
         Gravity disturbance, NED [m/s^2].
     dtheta, dvel, prev_theta, prev_vel : tuple of 3
@@ -165,14 +183,10 @@ def mechanise(
     f_n : tuple of 3
         Specific-force increment of the sample in the navigation frame [m/s].
     """
-    sl, cl, r_m, r_n, g, w_ie, w_en = local
+    _, cl, r_m, r_n, _, _, _ = local
     factor = two_sample(prev_dt, dt)
     f_b = sculling(dtheta, dvel, prev_theta, prev_vel, factor)
-    new, f_n = velocity_step(v, rotate(c, f_b), w_ie, w_en, (dg[0], dg[1], dg[2] + g), dt)
-    mid = (0.5 * (v[0] + new[0]), 0.5 * (v[1] + new[1]), 0.5 * (v[2] + new[2]))
-    w_mid = earth.transport_rate(mid[0], mid[1], sl / cl, r_m, r_n)
-    step_lat = mid[0] / r_m * dt
-    lon = lon + mid[1] / (r_n * (cl - 0.5 * sl * step_lat)) * dt
-    w_in = (w_ie[0] + w_mid[0], w_ie[1] + w_mid[1], w_ie[2] + w_mid[2])
+    new, mid, w_in, f_n = velocity_step(v, rotate(c, f_b), local, dg, dt)
     q = attitude_step(q, coning(dtheta, prev_theta, factor), w_in, dt)
-    return lat + step_lat, lon, height - mid[2] * dt, new, q, f_n
+    lat, lon = lat + mid[0] / r_m * dt, lon + mid[1] / (r_n * cl) * dt
+    return lat, lon, height - mid[2] * dt, new, q, f_n

@@ -111,7 +111,6 @@ def propagate(
     cov_dt, tick_dt = memory[COV_DT], memory[TICK_DT]
     sum_f, sum_w, sum_a = _load3(memory, COV_F), _load3(memory, COV_W), _load3(memory, COV_A)
     tick_w, tick_f = _load3(memory, TICK_W), _load3(memory, TICK_F)
-    local = local_earth(lat, height, v)
     driven = max(offsets[0], offsets[1], offsets[2]) >= 0
     decay = (noise[5], noise[6])
     m, phi, tail = scratch[0], scratch[1, : NAV * ROW], scratch[1, NAV * ROW : (NAV + 1) * ROW]
@@ -129,6 +128,7 @@ def propagate(
         w = (wx - bg[0] * h, wy - bg[1] * h, wz - bg[2] * h)
         f = (fx - ba[0] * h, fy - ba[1] * h, fz - ba[2] * h)
         c0 = c
+        local = local_earth(lat, height, v, h)
         lat, lon, height, v1, q, f_n = mechanise(
             lat, lon, height, v, q, c, local, dg, w, f, prev_theta, prev_vel, prev_dt, h
         )
@@ -158,7 +158,6 @@ def propagate(
             cov_dt = 0.0
             sum_f = sum_w = sum_a = (0.0, 0.0, 0.0)
         c, v = matrix_rows(q), v1
-        local = local_earth(lat, height, v)
         if stop:
             break
     if k > first:
