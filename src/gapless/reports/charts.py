@@ -142,7 +142,11 @@ def _error_charts(scores: Scores, start: float) -> Iterator[dict[str, Any]]:
     t, size, bound = e.time - start, e.horizontal, e.bound()
     title = "Horizontal error" if scores.truth == "reference" else "Horizontal distance to the fixes"
     worst = float(np.nanmax(size))
-    top = worst if not np.isfinite(bound).any() else max(worst, min(float(np.nanmax(bound)), 2.0 * worst))
+    top = (
+        worst
+        if not np.isfinite(bound).any()
+        else max(worst, min(float(np.nanpercentile(bound, 99.0)), 2.0 * worst))
+    )
     yield _chart(
         "Errors",
         title,

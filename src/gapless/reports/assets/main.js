@@ -22,9 +22,10 @@ slider.value = data.span[0];
 slider.addEventListener("input", () => setTime(+slider.value));
 document.getElementById("reset").addEventListener("click", () => { setRange(...data.span); track.fit(); });
 for (const button of document.querySelectorAll("[data-from]")) {
-  button.title = "Show this outage on the track and in the charts";
+  const from = +button.dataset.from, to = +button.dataset.to, margin = 0.25 * (to - from);
+  button.disabled = to <= data.span[0] || from >= data.span[1];
+  button.title = button.disabled ? "The solution does not reach this outage" : "Show this outage on the track and in the charts";
   button.addEventListener("click", () => {
-    const from = +button.dataset.from, to = +button.dataset.to, margin = 0.25 * (to - from);
     setRange(from - margin, to + margin);
     setTime(to - 0.5);
     track.fit(from, to);

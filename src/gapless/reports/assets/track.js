@@ -17,10 +17,10 @@ class Track extends Drawing {
     return a <= b ? [a, b, c, d] : [-50, 50, -50, 50];
   }
   fit(from, to) {
-    const [a, b, c, d] = this.bounds(from, to), pad = 44;
+    const [a, b, c, d] = this.bounds(from, to), pad = 40, buttons = 28;
     const wide = Math.max(b - a, 20), high = Math.max(d - c, 20);
-    this.scale = Math.min((this.width - 2 * pad) / wide, (this.height - 2 * pad) / high);
-    this.centre = [(a + b) / 2, (c + d) / 2];
+    this.scale = Math.min((this.width - 2 * pad - buttons) / wide, (this.height - 2 * pad) / high);
+    this.centre = [(a + b) / 2 - buttons / 2 / this.scale, (c + d) / 2];
     this.stale = true;
     request();
   }
@@ -127,7 +127,7 @@ class Track extends Drawing {
     c.font = font(11, 650);
     c.textBaseline = "middle";
     data.outages.forEach(([a, b], k) => {
-      const p = this.at(Math.max((a + b) / 2, this.track.t[0]));
+      const p = this.at(Math.min(Math.max((a + b) / 2, this.track.t[0]), b));
       if (!p) return;
       const X = this.px(p[0]), Y = this.py(p[1]);
       c.fillStyle = colour("card");
