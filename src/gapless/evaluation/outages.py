@@ -18,6 +18,8 @@ BEFORE_MOTION: Final = "before motion + 30 s"
 NO_MOTION: Final = "no motion"
 LITTLE_TRUTH: Final = "too little truth"
 IMU_GAP: Final = "imu gap"
+LABELS: Final = (BEFORE_MOTION, NO_MOTION, LITTLE_TRUTH, IMU_GAP)
+"""Everything that sets an outage apart."""
 
 SETTLING: Final = 30.0
 """An outage that begins less than this [s] after the first motion tests the alignment instead."""

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 from dataclasses import dataclass
 
 import numpy as np
 
 from gapless.evaluation.errors import Errors, at_antenna, gnss_truth, solution_errors
 from gapless.evaluation.motion import first_motion
-from gapless.evaluation.outages import OutageScore, height_offset, score_outages
+from gapless.evaluation.outages import LABELS, OutageScore, height_offset, score_outages
 from gapless.evaluation.statistics import Consistency, Spread, consistency, rms, spread
 from gapless.recording import Recording
 from gapless.scenarios import Outage, withheld
@@ -174,19 +174,22 @@ def accuracy(errors: Errors, height_offset: float = 0.0) -> Accuracy:
     )
 
 
-def pool_spread(scores: Iterable[Scores]) -> Spread:
+def pool_spread(scores: Iterable[Scores], apart: Collection[str] = LABELS) -> Spread:
     """Spread of the largest horizontal error over the pooled outages of several recordings.
 
     Parameters
     ----------
     scores : iterable of Scores
+    apart : collection of str
+        Labels that leave an outage out.
 
     Returns
     -------
     Spread
         [m]
     """
-    return spread(o.horizontal_max for one in scores for o in one.pool)
+    every = (o for one in scores for o in one.outages)
+    return spread(o.horizontal_max for o in every if not set(o.labels) & set(apart))
 
 
 _STATEMENTS = (

@@ -134,6 +134,8 @@ def test_outages_that_do_not_count_are_labelled_and_kept(drive):
     assert [o.counts for o in scores.outages] == [False, False, True, False, False]
     assert len(scores.pool) == 1
     assert pool_spread([scores, scores]).count == 2
+    # The outage without truth at its end and the one with an IMU gap have errors, and count if asked.
+    assert pool_spread([scores], apart=(BEFORE_MOTION,)).count == 3
 
 
 def test_an_outage_without_any_truth_is_nan_not_zero(drive):
