@@ -231,17 +231,18 @@ class Navigator:
         if k < 0:
             self.dropped += len(late)
             return
-        state = self._past[k][0]
         events = [event for _, kept in self._past[k:] for event in kept]
-        blocks = [event for event in events if isinstance(event, ImuBlock)]
-        readings = [event for event in events if not isinstance(event, ImuBlock)]
-        del self._past[k + 1 :]
-        self._past[k] = (state, [ImuBlock.join(blocks), *readings, late])
-        self._state = state.copy()
-        for event in (*readings, late):
-            self._await(event)
+        self._state = self._past[k][0].copy()
+        del self._past[k:]
+        for event in (*events, late):
+            if not isinstance(event, ImuBlock):
+                self._await(event)
+        for event in events:
+            if isinstance(event, ImuBlock):
+                self._remember(event)
+                self._apply_due()
+                self._feel(event)
         self._apply_due()
-        self._feel(self._past[k][1][0])  # type: ignore[arg-type]
 
     def _apply_due(self) -> None:
         pending, state = self._state.pending, self._state
