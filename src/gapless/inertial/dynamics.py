@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Final
 
 from gapless import earth
 from gapless._numba import inline
@@ -10,6 +10,9 @@ from gapless.inertial.increments import Three
 from gapless.inertial.layout import ROW
 from gapless.inertial.mechanise import Nine
 from gapless.recording import Array
+
+GRAVITY_NORTHWARD: Final = 0.1033
+"""Rate of normal gravity with latitude over sin cos [m/s^2]: g_e (2 k + e^2) of Somigliana's formula."""
 
 
 @inline
@@ -28,7 +31,7 @@ def velocity_rows(v: Three, local: Any) -> tuple[Any, ...]:
     tuple of 14
         n<-p_n, n<-p_d, e<-p_n, e<-p_d, d<-p_n, d<-p_d; n<-v_n, n<-v_e, n<-v_d, e<-v_n, e<-v_e,
         e<-v_d, d<-v_n, d<-v_e (d<-v_d is zero). Groves (2013), eq. 14.63 to 14.67, position errors
-        in metres.
+        in metres; and gravity's change with latitude, more than Coriolis' at a car's speed.
     """
     sl, cl, r_m, r_n, g, _, _ = local
     vn, ve, vd = v
@@ -39,7 +42,7 @@ def velocity_rows(v: Three, local: Any) -> tuple[Any, ...]:
         vn * vd * i_m * i_m - ve * ve * tan * i_n * i_n,
         (2.0 * w * (vn * cl - vd * sl) + vn * ve * sec2 * i_n) * i_m,
         (vn * tan + vd) * ve * i_n * i_n,
-        2.0 * ve * w * sl * i_m,
+        (2.0 * ve * w + GRAVITY_NORTHWARD * cl) * sl * i_m,
         -ve * ve * i_n * i_n - vn * vn * i_m * i_m + 2.0 * g / earth.SEMI_MAJOR,
         vd * i_m,
         -2.0 * (w * sl + ve * tan * i_n),
