@@ -158,12 +158,19 @@ def test_a_wrong_coefficient_is_noticed(steps, differences):
     assert not blind
 
 
-def test_covariance_is_phi_p_phi(steps):
+def test_covariance_and_error_go_through_phi(steps):
+    """Dense products with decaying biases, against the kernel's blocks."""
+    decay = np.array([0.0] * 5 + [0.2, 0.5])  # 1/s; no noise
+    steps = steps.copy()
+    for axis in range(9, 15):
+        steps[:, axis, axis] = 1.0 - DT * decay[5 if axis < 12 else 6]
     rng = np.random.default_rng(2)
-    root = rng.normal(size=(24, 24))
+    root, error = rng.normal(size=(24, 24)), rng.normal(size=24)
     run = start()
-    run.P[:] = root @ root.T
+    run.noise, run.P[:], run.error[:] = decay, root @ root.T, error
     run.go(increments())
-    expected = product(steps) @ root @ root.T @ product(steps).T
+    phi = product(steps)
+    expected = phi @ root @ root.T @ phi.T
     # Sums of 24 products, 200 times.
-    np.testing.assert_allclose(run.P, expected, rtol=1e-10, atol=1e-10 * np.abs(expected).max())
+    np.testing.assert_allclose(run.P, expected, rtol=1e-10, atol=1e-12 * np.abs(expected).max())
+    np.testing.assert_allclose(run.error, phi @ error, rtol=1e-10, atol=1e-12 * np.abs(phi @ error).max())
