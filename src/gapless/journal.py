@@ -19,12 +19,12 @@ from gapless.solution import Innovations
 class _Channel:
     time: list[float] = field(default_factory=list)
     z: list[Array] = field(default_factory=list)
-    sd: list[Array] = field(default_factory=list)
+    s: list[Array] = field(default_factory=list)
     nis: list[float] = field(default_factory=list)
     factor: list[float] = field(default_factory=list)
 
     def cut(self, n: int) -> None:
-        for column in (self.time, self.z, self.sd, self.nis, self.factor):
+        for column in (self.time, self.z, self.s, self.nis, self.factor):
             del column[n:]
 
 
@@ -68,14 +68,16 @@ class Journal:
         self.variances.append(np.concatenate([p.diagonal(), cross]))
         self.sources.append(source)
 
-    def innovation(self, channel: str, time: float, z: Array, sd: Array, nis: float, factor: float) -> None:
+    def innovation(self, channel: str, time: float, z: Array, s: Array, nis: float, factor: float) -> None:
         """Write an innovation down.
 
         Parameters
         ----------
         channel : str
         time : float
-        z, sd : ndarray
+        z : ndarray, shape (m,)
+        s : ndarray, shape (m, m)
+            Predicted covariance of z.
         nis, factor : float
             As in `Innovations`.
         """
@@ -85,7 +87,7 @@ class Journal:
         c = self.channels.setdefault(channel, _Channel())
         c.time.append(time)
         c.z.append(z)
-        c.sd.append(sd)
+        c.s.append(s)
         c.nis.append(nis)
         c.factor.append(factor)
 
@@ -173,7 +175,13 @@ class Journal:
         dict of str to Innovations
         """
         return {
-            name: Innovations(*(np.array(v) for v in (c.time, c.z, c.sd, c.nis, c.factor)))
+            name: Innovations(
+                np.array(c.time),
+                np.array(c.z),
+                np.sqrt(np.diagonal(np.array(c.s), axis1=1, axis2=2)),
+                np.array(c.nis),
+                np.array(c.factor),
+            )
             for name, c in self.channels.items()
             if c.time
         }

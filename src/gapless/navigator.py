@@ -10,7 +10,6 @@ from typing import Any, Self
 
 import numpy as np
 
-from gapless import attitude
 from gapless.alignment.coarse import Aligner, Start
 from gapless.events import Event, ImuBlock, Motion, Reading
 from gapless.filters.adaptation.gate import Gate
@@ -26,6 +25,8 @@ from gapless.units import DEG
 
 EPS = 1e-6
 """Times closer than this are the same instant [s]."""
+GAP = 0.5
+"""A longer silence of the IMU is not bridged: it ends in a new alignment [s]."""
 
 
 @dataclass(frozen=True)
@@ -265,13 +266,22 @@ class Navigator:
     # --- samples --------------------------------------------------------------------------------
 
     def _feel(self, block: ImuBlock) -> None:
-        """Run through samples, stopping wherever a reading waits."""
-        state, start, n = self._state, 0, len(block.time)
+        """Run through samples that may have gaps between them."""
+        begin = block.time - block.dt
+        cuts = [0, *(np.flatnonzero(begin[1:] - block.time[:-1] > GAP) + 1).tolist(), len(begin)]
+        for first, last in zip(cuts[:-1], cuts[1:], strict=True):
+            if begin[first] - self._state.clock > GAP:
+                self._gap(float(begin[first]))
+            self._through(block if len(cuts) == 2 else block.rows(first, last))
+
+    def _through(self, block: ImuBlock) -> None:
+        """Run through samples without gaps, stopping wherever a reading waits."""
+        pending, start, n = self._state.pending, 0, len(block.time)
         while start < n:
-            due = state.pending[0].time if state.pending else math.inf
-            if due > block.time[-1] + EPS:
+            if not pending or pending[0].time > block.time[-1] + EPS:
                 self._run(block, start, n)
                 return
+            due = pending[0].time
             end = int(np.searchsorted(block.time, due + EPS, side="right"))
             if end > start:
                 self._run(block, start, end)
@@ -286,9 +296,9 @@ class Navigator:
         memory = self._state.belief.memory
         dt = float(sample.dt[0])
         part = dt - (float(sample.time[0]) - due)
-        if part <= EPS:  # the reading fell into a gap before the sample
-            self._apply_late_in_gap(due)
-            self._feel(sample)
+        if part <= EPS:  # held for the instant before the sample began
+            self._apply(self._state.pending.pop(0))
+            self._through(sample)
             return
         before = float(memory[at.PREV_DT])
         parts = []
@@ -298,21 +308,11 @@ class Navigator:
         tail = ImuBlock(sample.time, np.array([dt - part]), sample.dtheta - parts[0], sample.dvel - parts[1])
         self._run(head, 0, 1)
         self._apply_due()
-        self._feel(tail)
-
-    def _apply_late_in_gap(self, due: float) -> None:
-        state = self._state
-        while state.pending and state.pending[0].time <= due + EPS:
-            self._apply(state.pending.pop(0))
+        self._through(tail)
 
     def _run(self, block: ImuBlock, first: int, last: int) -> None:
         """Propagate samples first..last-1, ticking on the way."""
         s, state = self.settings, self._state
-        begin = block.time[first:last] - block.dt[first:last]
-        gaps = begin[1:] - block.time[first : last - 1] > 0.5
-        if gaps.any() or begin[0] - state.clock > 0.5:
-            self._run_with_gaps(block, first, last, gaps)
-            return
         if state.aligner is not None:
             rows = np.column_stack([block.time, block.dt, block.dtheta, block.dvel])[first:last]
             state.clock = float(block.time[last - 1])
@@ -328,23 +328,16 @@ class Navigator:
             if b.memory[at.TICK_DT] >= s.tick - at.ROUND:
                 self._tick()
 
-    def _run_with_gaps(self, block: ImuBlock, first: int, last: int, gaps: Array) -> None:
-        cuts = [first, *(np.flatnonzero(gaps) + first + 1).tolist(), last]
-        for a, b in zip(cuts[:-1], cuts[1:], strict=True):
-            begin = float(block.time[a] - block.dt[a])
-            if begin - self._state.clock > 0.5:
-                if math.isfinite(self._state.clock):
-                    self._gap(begin)
-                self._state.clock = begin
-            self._run(block, a, b)
-
     def _gap(self, begin: float) -> None:
         """The IMU was silent: nothing is known of the motion; what is constant is kept."""
         state = self._state
-        state.belief.memory[:] = 0.0
-        state.belief.memory[at.TIME] = begin
-        if state.aligner is None:
+        if math.isfinite(state.clock):
+            while state.pending and state.pending[0].time <= begin:
+                state.pending.pop(0)
+            state.belief.memory[:] = 0.0
+            state.belief.memory[at.TIME] = begin
             state.aligner = self.settings.aligner.copy()
+        state.clock = begin
 
     def _tick(self) -> None:
         state, m = self._state, self._state.belief.memory
@@ -411,29 +404,16 @@ class Navigator:
         b = state.belief
         z = o.z - o.H @ b.error[:n] if b.error.size else o.z
         nis, s = assess(b.p, ROW, n, z, o.H, o.R)
-        verdict = state.gate.judge(channel, time, z, nis, np.sqrt(np.diag(o.R)))
-        self.journal.innovation(channel, time, z, np.sqrt(np.diag(s)), nis, verdict.factor)
+        verdict = state.gate.judge(channel, time, z, nis, o.R)
+        self.journal.innovation(channel, time, z, s, nis, verdict.factor)
         if verdict.widen:
             b.widen(o.H, z)
         if math.isinf(verdict.factor):
             return False
-        dx = correct(b.p, ROW, n, z, o.H, o.R * verdict.factor, 1.0)
+        r = o.R if verdict.factor == 1.0 else o.R * verdict.factor
+        dx = correct(b.p, ROW, n, z, o.H, r, 1.0)
         if b.error.size:
             b.error[:n] += dx
         else:
             inject(b.x, dx)
         return True
-
-
-def euler(belief: Belief) -> Array:
-    """Roll, pitch, heading of the best estimate [rad].
-
-    Parameters
-    ----------
-    belief : Belief
-
-    Returns
-    -------
-    ndarray, shape (3,)
-    """
-    return attitude.to_euler(belief.estimate()[6:10])

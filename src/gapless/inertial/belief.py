@@ -120,23 +120,6 @@ class Belief:
         """Direction cosine matrix of the nominal state."""
         return attitude.to_matrix(self.q_nb)
 
-    @property
-    def rate(self) -> Array:
-        """Corrected body rate of the last sample [rad/s]."""
-        dt = self.memory[at.PREV_DT]
-        theta = self.memory[at.PREV_THETA : at.PREV_THETA + 3]
-        return np.asarray(theta / dt if dt > 0.0 else np.zeros(3))
-
-    @property
-    def acceleration(self) -> Array:
-        """Acceleration over ground of the last sample, NED, to a few mm/s^2 [m/s^2]."""
-        dt = self.memory[at.PREV_DT]
-        if dt <= 0.0:
-            return np.zeros(3)
-        a = self.C_nb @ self.memory[at.PREV_VEL : at.PREV_VEL + 3] / dt
-        a[2] += earth.gravity(np.sin(self.x[0]), self.x[2])
-        return np.asarray(a)
-
     def block(self, name: str) -> Array:
         """A block of additive states, such as "gyro_bias" (a view).
 

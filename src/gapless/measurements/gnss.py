@@ -14,6 +14,7 @@ from gapless._numba import inline, kernel
 from gapless.attitude import matrix_rows
 from gapless.events import Reading
 from gapless.inertial.belief import Belief
+from gapless.inertial.propagate import PREV_DT, PREV_THETA, PREV_VEL
 from gapless.measurements.base import Observation
 from gapless.recording import Array
 
@@ -47,7 +48,7 @@ def _cross(a: Any, b: Any) -> Array:
 
 @kernel
 def position(
-    x: Array, offsets: NDArray[np.int64], n: int, lever: Array, lla: Array, sd: Array
+    x: Array, offsets: NDArray[np.int64], n: int, lever: Array, jitter: float, lla: Array, sd: Array
 ) -> tuple[Array, Array, Array]:
     """Antenna position: z = antenna observed - (p + C_nb l), in NED metres.
 
@@ -61,6 +62,8 @@ def position(
         Number of error states.
     lever : ndarray, shape (3,)
         Antenna from the IMU, FRD [m].
+    jitter : float
+        Standard deviation of the time stamp [s].
     lla : ndarray, shape (3,)
         Observed latitude, longitude [rad], height [m].
     sd : ndarray, shape (3,)
@@ -86,7 +89,9 @@ def position(
     h, r = np.zeros((3, n)), np.zeros((3, 3))
     for i in range(3):
         h[i, i] = 1.0
-        r[i, i] = sd[i] * sd[i]
+        for j in range(3):
+            r[i, j] = x[3 + i] * x[3 + j] * jitter * jitter
+        r[i, i] += sd[i] * sd[i]
         if offsets[LEVER] >= 0:
             for j in range(3):
                 h[i, offsets[LEVER] + j] = c[i, j]
@@ -100,26 +105,21 @@ def velocity(
     offsets: NDArray[np.int64],
     n: int,
     lever: Array,
-    rate: Array,
-    lag: Array,
-    lag_force: Array,
+    memory: Array,
+    jitter: float,
     v_n: Array,
     sd: Array,
 ) -> tuple[Array, Array, Array]:
-    """Antenna velocity, at an instant or as the mean over an epoch that ends now.
-
-    z = v observed - (v + C_nb (omega x l) - lag). The mean over an epoch is the velocity at its end
-    less the mean of what was gained since each instant of it: `lag`, of which `lag_force` came
-    from specific force and so turns with an attitude error.
+    """Antenna velocity: z = v observed - (v + C_nb (omega x l)).
 
     Parameters
     ----------
     x, offsets, n, lever
         As for `position`.
-    rate : ndarray, shape (3,)
-        Corrected body rate [rad/s].
-    lag, lag_force : ndarray, shape (3,)
-        NED [m/s]; zeros for an instantaneous velocity.
+    memory : ndarray
+        What the last sample left behind: body rate and specific force.
+    jitter : float
+        Standard deviation of the time stamp [s].
     v_n, sd : ndarray, shape (3,)
         Observed velocity and its standard deviations [m/s].
 
@@ -130,19 +130,28 @@ def velocity(
         Groves (2013), eq. 14.111 without the earth-rate terms (below 1e-4 m/s for arms of a metre).
     R : ndarray, shape (3, 3)
     """
+    rate, force = np.zeros(3), np.zeros(3)
+    if memory[PREV_DT] > 0.0:
+        for i in range(3):
+            rate[i] = memory[PREV_THETA + i] / memory[PREV_DT]
+            force[i] = memory[PREV_VEL + i] / memory[PREV_DT]
     c = _matrix(x)
     arm = _lever(x, offsets, lever)
     spin = _cross(rate, arm)
-    swing, turned = np.empty(3), np.empty(3)
+    swing, late = np.empty(3), np.empty(3)
     for i in range(3):
         swing[i] = c[i, 0] * spin[0] + c[i, 1] * spin[1] + c[i, 2] * spin[2]
-        turned[i] = swing[i] - lag_force[i]
+        late[i] = (c[i, 0] * force[0] + c[i, 1] * force[1] + c[i, 2] * force[2]) * jitter
+    if force[2] != 0.0:
+        late[2] += earth.gravity(np.sin(x[0]), x[2]) * jitter
     z = np.empty(3)
     h, r = np.zeros((3, n)), np.zeros((3, 3))
     for i in range(3):
-        z[i] = v_n[i] - x[3 + i] - swing[i] + lag[i]
+        z[i] = v_n[i] - x[3 + i] - swing[i]
         h[i, 3 + i] = 1.0
-        r[i, i] = sd[i] * sd[i]
+        for j in range(3):
+            r[i, j] = late[i] * late[j]
+        r[i, i] += sd[i] * sd[i]
         row = _cross(c[i], arm)
         for j in range(3):
             h[i, 9 + j] = row[j]
@@ -150,7 +159,7 @@ def velocity(
             row = _cross(c[i], rate)
             for j in range(3):
                 h[i, offsets[LEVER] + j] = row[j]
-    _minus_skew(turned, h, 0, 6)
+    _minus_skew(swing, h, 0, 6)
     return z, h, r
 
 
@@ -180,9 +189,9 @@ class Position:
         """Observation of the antenna's position; see `Sensor.observe`."""
         layout = belief.layout
         sd = np.maximum(reading.sd, self.floor) * _share(self.correlation, reading.interval)
-        z, h, r = position(belief.x, layout.offsets, layout.n, self.lever, reading.value, sd)
-        v = belief.v_n * self.jitter
-        return Observation(z, h, r + v[:, None] * v)
+        return Observation(
+            *position(belief.x, layout.offsets, layout.n, self.lever, self.jitter, reading.value, sd)
+        )
 
 
 @dataclass(frozen=True)
@@ -208,13 +217,13 @@ class Velocity:
 
     def observe(self, belief: Belief, reading: Reading) -> Observation:
         """Observation of the antenna's velocity; see `Sensor.observe`."""
-        layout, none = belief.layout, np.zeros(3)
+        layout = belief.layout
         sd = np.maximum(reading.sd, self.floor) * _share(self.correlation, reading.interval)
-        z, h, r = velocity(
-            belief.x, layout.offsets, layout.n, self.lever, belief.rate, none, none, reading.value, sd
+        return Observation(
+            *velocity(
+                belief.x, layout.offsets, layout.n, self.lever, belief.memory, self.jitter, reading.value, sd
+            )
         )
-        a = belief.acceleration * self.jitter
-        return Observation(z, h, r + a[:, None] * a)
 
 
 def _share(correlation: float, interval: float) -> float:

@@ -11,13 +11,15 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field, fields
-from typing import Self
+from typing import Any, Self
 
 import numpy as np
 
-from gapless._numba import kernel
+from gapless._numba import inline, kernel
+from gapless.attitude import matrix_rows
 from gapless.events import Motion, Reading
 from gapless.inertial.belief import Belief
+from gapless.inertial.layout import ROW
 from gapless.measurements.base import Observation
 from gapless.measurements.zero_velocity import zero_velocity
 from gapless.recording import Array
@@ -26,33 +28,123 @@ from gapless.units import DEG
 SLOTS = 15
 """Ticks in the window."""
 STILL, MOVING = 0, 1
-FLOOR = np.array([3e-4, 3e-3])
-"""Spread that no sensor resolves: rad/s, m/s^2."""
 
 
-@kernel
-def log_spread(ring: Array) -> tuple[float, float]:
-    """Log of the total standard deviation of rate and of specific force over a window of ticks.
+@inline
+def log_spread(ring: Array, column: int, floor: float) -> Any:
+    """Log of the total standard deviation of three columns over a window of ticks.
 
     Parameters
     ----------
     ring : ndarray, shape (slots, 6)
         Mean rate [rad/s] and specific force [m/s^2] of each tick.
+    column : int
+        First of the three.
+    floor : float
+        Spread that no sensor resolves.
 
     Returns
     -------
-    rate, force : float
+    float
     """
     n = ring.shape[0]
-    total = np.zeros(2)
-    for c in range(6):
+    total = floor * floor
+    for c in range(column, column + 3):
         mean = 0.0
         for i in range(n):
             mean += ring[i, c]
         mean /= n
         for i in range(n):
-            total[c // 3] += (ring[i, c] - mean) ** 2 / n
-    return 0.5 * math.log(total[0] + 3e-4**2), 0.5 * math.log(total[1] + 3e-3**2)
+            total += (ring[i, c] - mean) ** 2 / n
+    return 0.5 * np.log(total)
+
+
+@inline
+def log_odds(spread: Array, mean: Array, var: Array) -> tuple[Any, Any]:
+    """Log likelihood of "still" over that of "moving", and over the best that "still" can have.
+
+    The classes are one-sided: quieter than the stops is still, rougher than the driving is driving.
+
+    Parameters
+    ----------
+    spread : ndarray, shape (2,)
+        Log spreads of rate and specific force.
+    mean, var : ndarray, shape (2, 2)
+        Of the log spreads of each class.
+
+    Returns
+    -------
+    odds, fit : float
+    """
+    odds = fit = 0.0
+    for i in range(2):
+        over = max(spread[i] - mean[STILL, i], 0.0)
+        under = min(spread[i] - mean[MOVING, i], 0.0)
+        fit -= 0.5 * over * over / var[STILL, i]
+        odds += 0.5 * (under * under / var[MOVING, i] + np.log(var[MOVING, i] / var[STILL, i]))
+    return odds + fit, fit
+
+
+@kernel
+def stands(
+    x: Array,
+    p: Array,
+    row: int,
+    felt: Array,
+    share: float,
+    ring: Array,
+    spread: Array,
+    smooth: Array,
+    mean: Array,
+    var: Array,
+    odds: float,
+    limits: Array,
+) -> bool:
+    """Whether a tick looks like a stop of this drive.
+
+    Parameters
+    ----------
+    x : ndarray
+        Nominal state.
+    p : ndarray, shape (row * row,)
+        Covariance.
+    row : int
+    felt : ndarray, shape (6,)
+        Mean rate [rad/s] and specific force [m/s^2] of the tick.
+    share : float
+        Weight of the tick in the smoothed motion.
+    ring : ndarray, shape (slots, 6)
+        The window, this tick included.
+    spread, smooth : ndarray, shape (2,), (5,)
+        Changed in place: log spreads; smoothed rate and horizontal acceleration.
+    mean, var : ndarray, shape (2, 2)
+        Of the classes.
+    odds : float
+        Least log odds.
+    limits : ndarray, shape (3,)
+        Largest rate [rad/s], acceleration [m/s^2], squared Mahalanobis norm of the velocity.
+
+    Returns
+    -------
+    bool
+    """
+    c = matrix_rows((x[6], x[7], x[8], x[9]))
+    spread[0], spread[1] = log_spread(ring, 0, 3e-4), log_spread(ring, 3, 3e-3)
+    for i in range(3):
+        smooth[i] += share * (felt[i] - smooth[i])
+    for i in range(2):
+        a = c[3 * i] * felt[3] + c[3 * i + 1] * felt[4] + c[3 * i + 2] * felt[5]
+        smooth[3 + i] += share * (a - smooth[3 + i])
+    better, fit = log_odds(spread, mean, var)
+    if better < odds or fit < -4.5:
+        return False
+    if smooth[0] ** 2 + smooth[1] ** 2 + smooth[2] ** 2 > limits[0] ** 2:
+        return False
+    if smooth[3] ** 2 + smooth[4] ** 2 > limits[1] ** 2:
+        return False
+    nn, ee, ne = p[3 * row + 3] + 0.04, p[4 * row + 4] + 0.04, p[3 * row + 4]
+    surprise = (ee * x[3] ** 2 - 2.0 * ne * x[3] * x[4] + nn * x[4] ** 2) / (nn * ee - ne * ne)
+    return bool(surprise < limits[2])
 
 
 @dataclass
@@ -69,6 +161,8 @@ class Stillness:
         Seconds that everything must have lasted.
     interval : float
         Least time between updates [s].
+    limits : ndarray, shape (3,)
+        As `stands` takes them: above these, nothing stands.
     """
 
     sd: float = 0.12
@@ -76,15 +170,13 @@ class Stillness:
     odds: float = 4.5
     hold: float = 1.5
     interval: float = 0.2
-    max_accel: float = 0.12
-    max_rate: float = 0.4 * DEG
-    max_surprise: float = 22.5
+    limits: Array = field(default_factory=lambda: np.array([0.4 * DEG, 0.12, 22.5]))
     ring: Array = field(default_factory=lambda: np.zeros((SLOTS, 6)))
     filled: int = 0
     count: Array = field(default_factory=lambda: np.zeros(2))
     mean: Array = field(default_factory=lambda: np.zeros((2, 2)))
     var: Array = field(default_factory=lambda: np.full((2, 2), 0.1))
-    smooth: Array = field(default_factory=lambda: np.zeros(6))
+    smooth: Array = field(default_factory=lambda: np.zeros(5))
     spread: Array = field(default_factory=lambda: np.full(2, 3.0))
     label: int = -1
     label_since: float = -math.inf
@@ -122,55 +214,40 @@ class Stillness:
         if label < 0 or time - self.label_since < 1.0 or self.filled < SLOTS:
             return
         self.count[label] += 1
-        weight = 1.0 / min(self.count[label], 300.0)
-        off = self.spread - self.mean[label]
-        if self.count[label] > 20:
-            limit = 4.0 * np.sqrt(self.var[label])
-            off = np.clip(off, -limit, limit)
-        self.mean[label] += weight * off
-        if self.count[label] > 5:
-            self.var[label] += weight * (off * off - self.var[label])
-        self.var[label] = np.maximum(self.var[label], 0.02)
+        weight, clipped = 1.0 / min(self.count[label], 300.0), self.count[label] > 20
+        for i in range(2):
+            off = self.spread[i] - self.mean[label, i]
+            if clipped:
+                limit = 4.0 * math.sqrt(self.var[label, i])
+                off = max(-limit, min(limit, off))
+            self.mean[label, i] += weight * off
+            if self.count[label] > 5:
+                self.var[label, i] += weight * (off * off - self.var[label, i])
+            self.var[label, i] = max(self.var[label, i], 0.02)
 
     def tick(self, belief: Belief, motion: Motion) -> Observation | None:
         """Zero-velocity observation where the vehicle stands; see `Constraint.tick`."""
-        self.ring[self.filled % SLOTS, :3] = motion.rate
-        self.ring[self.filled % SLOTS, 3:] = motion.force
+        felt = np.concatenate([motion.rate, motion.force])
+        self.ring[self.filled % SLOTS] = felt
         self.filled += 1
         if self.filled < SLOTS:
             return None
-        self.spread[:] = log_spread(self.ring)
-        self.lasted = self.lasted + motion.dt if self._still(belief, motion) else 0.0
+        x, share = belief.estimate(), min(1.0, motion.dt / 0.4)
+        still = stands(
+            x, belief.p, ROW, felt, share, self.ring, self.spread, self.smooth,
+            self.mean, self.var, self.odds, self.limits,
+        )  # fmt: skip
+        self.lasted = self.lasted + motion.dt if still and self._known(motion.time) else 0.0
         if self.lasted < self.hold or motion.time - self.last < self.interval - 1e-3:
             return None
         self.last = motion.time
-        x = belief.estimate()
         return Observation(*zero_velocity(x, belief.layout.n, motion.rate, self.sd, self.sd_rate))
 
-    def _still(self, belief: Belief, motion: Motion) -> bool:
-        x = belief.estimate()
-        c = belief.C_nb
-        accel = c @ motion.force
-        accel[2] = 0.0
-        felt = np.concatenate([accel, motion.rate])
-        self.smooth += min(1.0, motion.dt / 0.4) * (felt - self.smooth)
-        if self.count[STILL] < 8 or self.count[MOVING] < 20 or not self._looks_still():
+    def _known(self, time: float) -> bool:
+        """Both classes have been seen, and a fresh GNSS speed does not contradict."""
+        if self.count[STILL] < 8 or self.count[MOVING] < 20:
             return False
-        if np.linalg.norm(self.smooth[:3]) > self.max_accel or np.linalg.norm(self.smooth[3:]) > self.max_rate:
-            return False
-        if motion.time - self.label_time < 2.2 and self.label != STILL:
-            return False
-        v, p = x[3:5], belief.P[3:5, 3:5]
-        return bool(v @ np.linalg.solve(p + 0.04 * np.eye(2), v) < self.max_surprise)
-
-    def _looks_still(self) -> bool:
-        """One-sided classes: quieter than the stops is still, rougher than the driving is driving."""
-        over = np.maximum(self.spread - self.mean[STILL], 0.0)
-        under = np.minimum(self.spread - self.mean[MOVING], 0.0)
-        still = -0.5 * float(np.sum(over**2 / self.var[STILL] + np.log(self.var[STILL])))
-        moving = -0.5 * float(np.sum(under**2 / self.var[MOVING] + np.log(self.var[MOVING])))
-        best = -0.5 * float(np.sum(np.log(self.var[STILL])))
-        return still - moving > self.odds and still > best - 4.5
+        return time - self.label_time >= 2.2 or self.label == STILL
 
     def copy(self) -> Self:
         """An independent copy; see `Constraint.copy`."""

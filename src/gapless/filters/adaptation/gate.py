@@ -35,6 +35,9 @@ class Verdict(NamedTuple):
     widen: bool
 
 
+_AS_STATED = Verdict(1.0, False)
+
+
 class _Run(NamedTuple):
     """Surprising observations in a row that agree with each other."""
 
@@ -73,7 +76,7 @@ class Gate:
     accepted: dict[str, float] = field(default_factory=dict)
     runs: dict[str, _Run] = field(default_factory=dict)
 
-    def judge(self, channel: str, time: float, z: Array, nis: float, sd: Array) -> Verdict:
+    def judge(self, channel: str, time: float, z: Array, nis: float, r: Array) -> Verdict:
         """Verdict on an observation, and the memory of it.
 
         Parameters
@@ -85,8 +88,8 @@ class Gate:
             Innovation.
         nis : float
             z' S^-1 z.
-        sd : ndarray, shape (m,)
-            Stated standard deviations, sqrt(diag R).
+        r : ndarray, shape (m, m)
+            As stated.
 
         Returns
         -------
@@ -96,8 +99,8 @@ class Gate:
         if nis <= soft:
             self.accepted[channel] = time
             self.runs.pop(channel, None)
-            return Verdict(1.0, False)
-        run = self._extend(channel, time, z, sd)
+            return _AS_STATED
+        run = self._extend(channel, time, z, np.sqrt(np.diag(r)))
         if self._believe(channel, run, z):
             self.accepted[channel] = time
             self.runs.pop(channel, None)
