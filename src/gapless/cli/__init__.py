@@ -1,0 +1,83 @@
+"""The command line: one file per verb, and nothing heavy imported before a verb runs."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import click
+
+from gapless import __version__
+from gapless.cli.convert import convert
+from gapless.cli.fuse import fuse
+from gapless.cli.inspect import inspect
+from gapless.cli.simulate import simulate
+from gapless.errors import GaplessError
+
+REFUSED = 2
+"""Exit code where the input, the options or the disk cannot serve."""
+INTERRUPTED = 130
+"""Exit code after Ctrl-C, as shells have it: 128 + SIGINT."""
+
+
+class Verbs(click.Group):
+    """A group of verbs that ends in one line, not in a traceback, where a user can mend it."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        """Verbs in the order in which one needs them, not of the alphabet.
+
+        Parameters
+        ----------
+        ctx : click.Context
+
+        Returns
+        -------
+        list of str
+        """
+        return list(self.commands)
+
+    def invoke(self, ctx: click.Context) -> Any:
+        """Run a verb; turn what it refuses into a line on stderr and an exit code.
+
+        Parameters
+        ----------
+        ctx : click.Context
+
+        Returns
+        -------
+        object
+            What the verb returns.
+        """
+        try:
+            return super().invoke(ctx)
+        except GaplessError as error:
+            _leave(ctx, str(error), REFUSED)
+        except BrokenPipeError:  # the reader of our output has gone; click ends quietly
+            raise
+        except OSError as error:
+            named = f"{error.filename}: " if error.filename else ""
+            _leave(ctx, f"{named}{error.strerror or error}", REFUSED)
+        except KeyboardInterrupt:
+            _leave(ctx, "interrupted; no file was changed", INTERRUPTED)
+
+
+def _leave(ctx: click.Context, line: str, code: int) -> None:
+    click.echo(f"gapless: {' '.join(line.split())}", err=True)
+    ctx.exit(code)
+
+
+@click.group(cls=Verbs, context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 80})
+@click.version_option(__version__, message="%(prog)s %(version)s")
+def main() -> None:
+    r"""Fuse an IMU with GNSS, and keep navigating when GNSS goes silent.
+
+    A first try, without data of your own:
+
+    \b
+      gapless simulate --out drive
+      gapless inspect drive
+      gapless fuse drive --outage 240:300 --out solution
+    """
+
+
+for _verb in (inspect, fuse, simulate, convert):
+    main.add_command(_verb)

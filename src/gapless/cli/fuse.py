@@ -1,0 +1,116 @@
+"""`gapless fuse`: a recording in, a solution, its summary and its report out."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Iterable
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from gapless.cli.options import job, job_options, out_option
+
+if TYPE_CHECKING:
+    from gapless.cli.options import Job
+    from gapless.evaluation import Scores
+    from gapless.recording import Recording
+    from gapless.solution import Solution
+
+FORMATS = {
+    "csv": "every column, as text",
+    "kml": "for Google Earth",
+    "geojson": "for maps",
+    "gpx": "the track",
+}
+"""What is written besides Parquet where it is asked for."""
+
+
+def _formats(command: Callable[..., Any]) -> Callable[..., Any]:
+    for name, what in reversed(FORMATS.items()):
+        command = click.option(f"--{name}", name, is_flag=True, help=f"Write solution.{name} too: {what}.")(
+            command
+        )
+    return command
+
+
+@click.command(short_help="Fuse a recording into a trajectory.")
+@job_options
+@out_option
+@click.option(
+    "--rate",
+    type=click.FloatRange(min=0.0, min_open=True),
+    default=10.0,
+    show_default=True,
+    metavar="HZ",
+    help="Rows of the solution per second.",
+)
+@click.option("--vehicle", is_flag=True, help="Write the attitude of the car instead of the box's.")
+@_formats
+@click.option("--no-report", is_flag=True, help="Do not write report.html.")
+def fuse(out: Path, rate: float, vehicle: bool, no_report: bool, **rest: Any) -> None:
+    """Fuse a RECORDING into a trajectory with honest uncertainties.
+
+    RECORDING is a folder with imu and gnss logs, or the two text files of a
+    KF-GINS log. DIR receives solution.parquet, summary.json and report.html;
+    files of these names are replaced, once all the new ones are complete.
+    """
+    from gapless.cli.output import check_folder, write_together
+
+    chosen = [name for name in FORMATS if rest.pop(name)]
+    check_folder(out)
+    work = job(**rest)
+    solution, scores = _navigate(work, rate)
+    if vehicle:
+        from gapless.systems.vehicle import vehicle_attitude
+
+        solution = vehicle_attitude(solution)
+
+    from gapless.reports.summary import summarise
+    from gapless.reports.terminal import summary_lines
+
+    summary = summarise(solution, scores)
+    files = _solution_files(solution, chosen) | {"summary.json": partial(_write_json, summary)}
+    if not no_report:
+        files["report.html"] = partial(_write_report, solution, work.recording, scores)
+    write_together(out, files)
+    click.echo("\n".join([*summary_lines(summary), "", *(f"wrote {out / name}" for name in files)]))
+
+
+def _navigate(work: Job, rate: float) -> tuple[Solution, Scores | None]:
+    """Solution, and scores where there is something to score it against."""
+    from gapless.cli.progress import progress
+    from gapless.errors import ConfigError
+    from gapless.systems.fuse import fuse
+
+    tick = work.system.filter.tick
+    if rate * tick > 1.0 + 1e-9:
+        raise ConfigError(
+            f"--rate {rate:g}: rows come every {tick:g} s at most, so {1.0 / tick:g} Hz; lower the rate or "
+            "filter.tick in the configuration"
+        )
+    with progress("fusing", work.recording.duration) as tell:
+        solution = fuse(work.recording, work.system, work.outages, rate, work.causal, tell)
+    if work.recording.reference is None and not work.outages:
+        return solution, None
+
+    from gapless.evaluation import score
+
+    return solution, score(solution, work.recording)
+
+
+def _solution_files(solution: Solution, chosen: Iterable[str]) -> dict[str, Callable[[Path], object]]:
+    from gapless.io.writers import WRITERS
+
+    return {f"solution.{name}": partial(WRITERS[name].write, solution) for name in ("parquet", *chosen)}
+
+
+def _write_json(summary: dict[str, Any], path: Path) -> None:
+    path.write_text(json.dumps(summary, indent=1, ensure_ascii=False, allow_nan=False) + "\n", "utf-8")
+
+
+def _write_report(solution: Solution, recording: Recording, scores: Scores | None, path: Path) -> None:
+    from gapless.reports.report import write_report
+
+    write_report(solution, recording, scores, path)

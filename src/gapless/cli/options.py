@@ -1,0 +1,162 @@
+"""Options that several verbs share, and what they come to: a recording, a recipe, outages."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
+
+import click
+
+if TYPE_CHECKING:
+    from gapless.recording import Recording
+    from gapless.scenarios import Outage
+    from gapless.systems.recipe import System
+
+Command = TypeVar("Command", bound=Callable[..., Any])
+
+FOLDER = click.Path(file_okay=False, path_type=Path)
+recording_argument = click.argument("recording", nargs=-1, required=True, type=click.Path(path_type=Path))
+out_option = click.option("--out", type=FOLDER, required=True, metavar="DIR", help="Folder to write to.")
+_OUTAGE = (
+    click.option(
+        "--outage", multiple=True, metavar="START:END",
+        help="Withhold GNSS from START to END, in seconds after the first IMU sample. Repeatable.",
+    ),
+    click.option(
+        "--outages", multiple=True, metavar="PLAN",
+        help="Withhold GNSS at regular intervals: every=180,length=60,first=240 (seconds).",
+    ),
+)  # fmt: skip
+_RECIPE = (
+    click.option(
+        "--system", metavar="NAME", help="Built-in recipe: constraints (the one used) or ins."
+    ),
+    click.option(
+        "--config", type=click.Path(path_type=Path), metavar="FILE",
+        help="TOML recipe of your own; docs/configuration.md lists its keys.",
+    ),
+    click.option(
+        "--without", multiple=True, metavar="NAME",
+        help="Leave out a constraint (zero_velocity, nonholonomic) or a sensor "
+        "(position, velocity, odometer). Repeatable.",
+    ),
+    click.option(
+        "--clock", multiple=True, metavar="SENSOR=SECONDS",
+        help="Clock offset of position, velocity or odometer, added to its stamps, "
+        "instead of the one found in the data. Repeatable.",
+    ),
+    click.option(
+        "--causal", is_flag=True,
+        help="Find clock offsets and mounting on the way, never ahead of the moment.",
+    ),
+)  # fmt: skip
+
+
+class Job(NamedTuple):
+    """What the shared options ask for.
+
+    Parameters
+    ----------
+    recording : Recording
+    system : System
+    outages : tuple of Outage
+    causal : bool
+    """
+
+    recording: Recording
+    system: System
+    outages: tuple[Outage, ...]
+    causal: bool
+
+
+def outage_options(command: Command) -> Command:
+    """Give a verb `--outage` and `--outages`.
+
+    Parameters
+    ----------
+    command : callable
+
+    Returns
+    -------
+    callable
+    """
+    return _with(command, _OUTAGE)
+
+
+def job_options(command: Command) -> Command:
+    """Give a verb a recording, outages and a recipe; `job` understands them.
+
+    Parameters
+    ----------
+    command : callable
+
+    Returns
+    -------
+    callable
+    """
+    return _with(command, (recording_argument, *_OUTAGE, *_RECIPE))
+
+
+def _with(command: Command, options: Sequence[Callable[[Command], Command]]) -> Command:
+    for option in reversed(options):
+        command = option(command)
+    return command
+
+
+def job(
+    recording: Sequence[Path],
+    outage: Sequence[str],
+    outages: Sequence[str],
+    system: str | None,
+    config: Path | None,
+    without: Sequence[str],
+    clock: Sequence[str],
+    causal: bool,
+) -> Job:
+    """Read what the shared options name; the recipe first, since a slip in it shows sooner.
+
+    Parameters
+    ----------
+    recording : sequence of Path
+    outage, outages : sequence of str
+    system : str, optional
+    config : Path, optional
+    without, clock : sequence of str
+    causal : bool
+
+    Returns
+    -------
+    Job
+
+    Raises
+    ------
+    GaplessError
+        If a name, a value, a file or the data are wrong.
+    """
+    recipe = _system(system, config, without, clock)
+
+    from gapless.io import read
+    from gapless.scenarios import plan
+
+    found = read(*recording)
+    return Job(found, recipe, plan([*outage, *outages], found.duration), causal)
+
+
+def _system(name: str | None, config: Path | None, without: Sequence[str], clock: Sequence[str]) -> System:
+    from gapless.errors import ConfigError
+    from gapless.systems.adjust import with_clock
+    from gapless.systems.adjust import without as left_out
+    from gapless.systems.recipe import load
+
+    if name is not None and config is not None:
+        raise ConfigError("--system and --config both name a recipe; give one of them")
+    recipe = load(config if config is not None else name or "constraints")
+    recipe = left_out(recipe, *without)
+    for text in clock:
+        channel, _, value = text.partition("=")
+        try:
+            recipe = with_clock(recipe, channel.strip(), float(value))
+        except ValueError:
+            raise ConfigError(f"--clock {text}: write it like position=-0.15, in seconds") from None
+    return recipe

@@ -1,0 +1,90 @@
+"""`gapless simulate`: a recording of a drive that never was, with its truth."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from gapless.cli.options import out_option, outage_options
+
+
+@click.command(short_help="Simulate a drive, as a recording with its truth.")
+@click.option(
+    "--profile",
+    default="urban",
+    show_default=True,
+    metavar="NAME",
+    help="How it is driven: carpark, highway, static, urban or wang2018.",
+)
+@click.option(
+    "--grade",
+    default="consumer",
+    show_default=True,
+    metavar="NAME",
+    help="The IMU: perfect, consumer, liu2019, span-cpt, wang2018, tactical or navigation.",
+)
+@click.option(
+    "--duration", type=float, default=1800.0, show_default=True, metavar="SECONDS", help="At most this long."
+)
+@click.option(
+    "--seed",
+    type=click.IntRange(min=0),
+    default=1,
+    show_default=True,
+    metavar="N",
+    help="The same seed gives the same drive.",
+)
+@click.option(
+    "--mounting",
+    type=(float, float, float),
+    default=(0.0, 0.0, 0.0),
+    metavar="ROLL PITCH YAW",
+    help="How the IMU's box is turned in the car, in degrees.",
+)
+@click.option("--late", type=float, default=0.0, metavar="SECONDS", help="By how much GNSS stamps are late.")
+@click.option("--odometer", is_flag=True, help="Log wheel speed as well.")
+@outage_options
+@out_option
+def simulate(
+    profile: str,
+    grade: str,
+    duration: float,
+    seed: int,
+    mounting: tuple[float, float, float],
+    late: float,
+    odometer: bool,
+    outage: tuple[str, ...],
+    outages: tuple[str, ...],
+    out: Path,
+) -> None:
+    """Simulate a drive: IMU, GNSS and the truth, as a recording folder.
+
+    With --outage or --outages the receiver itself is silent, as in a tunnel.
+    """
+    from gapless.cli.output import check_folder
+
+    check_folder(out)
+
+    from dataclasses import replace
+
+    from gapless.cli.describe import describe
+    from gapless.io import write_recording
+    from gapless.scenarios import plan, withhold
+    from gapless.simulate import Receiver, Vehicle, WheelSensor
+    from gapless.simulate import simulate as drive
+    from gapless.units import DEG
+
+    made = drive(
+        profile,
+        grade,
+        duration,
+        seed,
+        vehicle=Vehicle(mounting=(mounting[0] * DEG, mounting[1] * DEG, mounting[2] * DEG)),
+        receiver=Receiver(position_delay=late, velocity_delay=late),
+        wheels=WheelSensor() if odometer else None,
+    )
+    silent = plan([*outage, *outages], made.duration)
+    made = replace(made, gnss=withhold(made.gnss, silent, made.start))
+    write_recording(made, out)
+    click.echo("\n".join([*describe(made), "", f"wrote {out}"]))

@@ -1,0 +1,83 @@
+"""Small changes to a recipe, checked as its TOML would be."""
+
+from __future__ import annotations
+
+from typing import get_args
+
+import msgspec
+from msgspec.structs import replace
+
+from gapless.errors import ConfigError
+from gapless.systems.recipe import Clock, Offset, System
+
+
+def without(system: System, *names: str) -> System:
+    """A system that does without some of its constraints or sensors.
+
+    Parameters
+    ----------
+    system : System
+    *names : str
+        "zero_velocity", "nonholonomic", "position", "velocity" or "odometer"; one that the system
+        does not use anyway changes nothing.
+
+    Returns
+    -------
+    System
+        Of the same name, with "without ..." behind it where something was taken out.
+
+    Raises
+    ------
+    ConfigError
+        If a name is none of these.
+    """
+    known = (*_choices("constraints"), *_choices("sensors"))
+    for name in names:
+        if name not in known:
+            raise ConfigError(f"there is no {name!r} to do without; choose from {', '.join(known)}")
+    out = [name for name in dict.fromkeys(names) if name in (*system.constraints, *system.sensors)]
+    if not out:
+        return system
+    return replace(
+        system,
+        name=f"{system.name} without {', '.join(out)}",
+        constraints=tuple(name for name in system.constraints if name not in out),
+        sensors=tuple(name for name in system.sensors if name not in out),
+    )
+
+
+def with_clock(system: System, channel: str, offset: float) -> System:
+    """A system that is told a clock offset instead of finding it.
+
+    Parameters
+    ----------
+    system : System
+    channel : str
+        "position", "velocity" or "odometer".
+    offset : float
+        What must be added to the sensor's stamps to land on the IMU clock [s].
+
+    Returns
+    -------
+    System
+
+    Raises
+    ------
+    ConfigError
+        If there is no such channel, or the offset is beyond what a recipe may say.
+    """
+    channels = Clock.__struct_fields__
+    if channel not in channels:
+        raise ConfigError(f"{channel!r} has no clock; choose from {', '.join(channels)}")
+    try:
+        told = msgspec.convert(offset, Offset)
+    except msgspec.ValidationError as error:
+        raise ConfigError(f"clock offset of {channel}, {offset:g} s: {error}") from None
+    return replace(system, clock=replace(system.clock, **{channel: told}))
+
+
+def _choices(field: str) -> tuple[str, ...]:
+    """The words that a field of a recipe may list."""
+    (kind,) = (f.type for f in msgspec.structs.fields(System) if f.name == field)
+    words: tuple[str, ...] = get_args(get_args(kind)[0])
+    return words
