@@ -56,4 +56,4 @@ def kernel(function: F) -> F:
 
 def inline(function: F) -> F:
     """Let kernels call a plain Python function, which stays one for Python."""
-    return cast(F, register_jitable(function))
+    return cast(F, register_jitable(forceinline=True)(function))

@@ -19,7 +19,8 @@ def events(
 ) -> Iterator[Event]:
     """IMU blocks and readings by arrival.
 
-    A reading arrives at its logged stamp and holds for that stamp plus its channel's offset.
+    A reading arrives at its logged stamp, before an IMU sample of the same stamp, and holds for that
+    stamp plus its channel's offset.
 
     Parameters
     ----------
@@ -39,7 +40,7 @@ def events(
     arrivals = [(t, r) for t, r in _arrivals(recording, offsets, thin) if start <= t < end]
     imu = recording.imu
     first, last = (int(k) for k in np.searchsorted(imu.time, [start, end]))
-    stops = np.searchsorted(imu.time, [t for t, _ in arrivals], side="right")
+    stops = np.searchsorted(imu.time, [t for t, _ in arrivals])
     for (_, readings), stop in zip(arrivals, np.clip(stops, first, last).tolist(), strict=True):
         if stop > first:
             yield ImuBlock.of(imu, first, stop)

@@ -279,12 +279,12 @@ class Navigator:
         pending, start, n = self._state.pending, 0, len(block.time)
         while start < n:
             if not pending or pending[0].time > block.time[-1] + EPS:
-                self._run(block, start, n)
+                self._run(block, start, n, False)
                 return
             due = pending[0].time
             end = int(np.searchsorted(block.time, due + EPS, side="right"))
             if end > start:
-                self._run(block, start, end)
+                self._run(block, start, end, due <= block.time[end - 1] + EPS)
                 self._apply_due()
                 start = end
             else:
@@ -306,12 +306,12 @@ class Navigator:
             parts.append(split(increment, memory[i : i + 3], before, dt, part))
         head = ImuBlock(np.array([due]), np.array([part]), parts[0][None], parts[1][None])
         tail = ImuBlock(sample.time, np.array([dt - part]), sample.dtheta - parts[0], sample.dvel - parts[1])
-        self._run(head, 0, 1)
+        self._run(head, 0, 1, True)
         self._apply_due()
         self._through(tail)
 
-    def _run(self, block: ImuBlock, first: int, last: int) -> None:
-        """Propagate samples first..last-1, ticking on the way."""
+    def _run(self, block: ImuBlock, first: int, last: int, due: bool) -> None:
+        """Propagate samples first..last-1, ticking on the way; `due`: an observation waits there."""
         s, state = self.settings, self._state
         if state.aligner is not None:
             rows = np.column_stack([block.time, block.dt, block.dtheta, block.dvel])[first:last]
@@ -322,7 +322,7 @@ class Navigator:
         while first < last:
             first = at.propagate(
                 b.x, b.memory, s.layout.width, b.p, b.scratch, b.error, s.layout.offsets, s.noise,
-                block.time, block.dt, block.dtheta, block.dvel, first, last, s.period, s.tick, True,
+                block.time, block.dt, block.dtheta, block.dvel, first, last, s.period, s.tick, due,
             )  # fmt: skip
             state.clock = float(block.time[first - 1])
             if b.memory[at.TICK_DT] >= s.tick - at.ROUND:
@@ -342,9 +342,7 @@ class Navigator:
     def _tick(self) -> None:
         state, m = self._state, self._state.belief.memory
         dt = float(m[at.TICK_DT])
-        motion = Motion(
-            state.clock, dt, m[at.TICK_W : at.TICK_W + 3] / dt, m[at.TICK_F : at.TICK_F + 3] / dt
-        )
+        motion = Motion(state.clock, dt, m[at.TICK_W : at.TICK_W + 3] / dt, m[at.TICK_F : at.TICK_F + 3] / dt)
         m[at.TICK_DT :] = 0.0
         for name, constraint in state.constraints.items():
             observation = constraint.tick(state.belief, motion)

@@ -55,7 +55,15 @@ class Curve(NamedTuple):
     value: Array
 
 
-def offset(curve: Curve, time: Array, value: Array, degree: int, span: float = 1.5, window: float = 20.0, correlation: float = 1.0) -> Offset:
+def offset(
+    curve: Curve,
+    time: Array,
+    value: Array,
+    degree: int,
+    span: float = 1.5,
+    window: float = 20.0,
+    correlation: float = 1.0,
+) -> Offset:
     """Shift in time at which readings fit a curve.
 
     Parameters

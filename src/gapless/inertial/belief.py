@@ -18,7 +18,7 @@ CORE_STATES: Final = 15
 
 @kernel
 def inject(x: Array, dx: Array) -> None:
-    """x (+) dx: position in metres, attitude by rotation vector, the rest added.
+    """X (+) dx: position in metres, attitude by rotation vector, the rest added.
 
     Parameters
     ----------
@@ -95,7 +95,7 @@ class Belief:
         return float(self.memory[at.TIME])
 
     @property
-    def P(self) -> Array:  # noqa: N802
+    def P(self) -> Array:
         """Covariance, a view of shape (n, n)."""
         n = self.layout.n
         return self.p.reshape(ROW, ROW)[:n, :n]
@@ -116,7 +116,7 @@ class Belief:
         return self.x[6:10]
 
     @property
-    def C_nb(self) -> Array:  # noqa: N802
+    def C_nb(self) -> Array:
         """Direction cosine matrix of the nominal state."""
         return attitude.to_matrix(self.q_nb)
 

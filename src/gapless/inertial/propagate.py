@@ -93,7 +93,8 @@ def propagate(
     tick : float
         Stop at the first sample that completes so much time since the last stop [s].
     flush : bool
-        Bring the covariance up to the last sample before returning.
+        Bring the covariance up to the last sample (a tick's end always does): for an observation
+        that is due there, never for the end of a block, or blocks would change the bits.
 
     Returns
     -------
@@ -142,7 +143,7 @@ def propagate(
         tick_f = (tick_f[0] + f[0], tick_f[1] + f[1], tick_f[2] + f[2])
         k += 1
         stop = tick_dt >= tick - ROUND
-        if cov_dt >= period - ROUND or (flush and (stop or k == last)):
+        if cov_dt >= period - ROUND or stop or (flush and k == last):
             transition(v, local, sum_f, c0, sum_w, sum_a, cov_dt, decay, offsets, phi, tail)
             apply(phi, width, p, m)
             if driven:

@@ -26,6 +26,7 @@ def settings(
     recording: Recording,
     offsets: Mapping[str, float],
     mounting: tuple[Array, Array],
+    gyro_density: float = 0.0,
     row: float = 0.1,
 ) -> Settings:
     """Settings of a navigator.
@@ -39,6 +40,8 @@ def settings(
         Clock offset of each channel [s].
     mounting : tuple of 2 ndarray, shape (2,)
         Pitch and yaw of the car's forward axis in the box, and their standard deviations [rad].
+    gyro_density : float
+        What the log's gyros show of vibration [rad/sqrt(s)].
     row : float
         Time between journal rows [s].
 
@@ -46,7 +49,7 @@ def settings(
     -------
     Settings
     """
-    imu = budget(system.imu)
+    imu = budget(system.imu, gyro_density)
     names = states(system, recording)
     angles, angle_sd = mounting
     return Settings(
@@ -71,7 +74,9 @@ def settings(
         tick=system.filter.tick,
         period=system.filter.covariance_period,
         row=row,
-        lateness=max(0.0, -min([0.0, *offsets.values()])) + 0.05 if min([0.0, *offsets.values()]) < 0 else 0.0,
+        lateness=max(0.0, -min([0.0, *offsets.values()])) + 0.05
+        if min([0.0, *offsets.values()]) < 0
+        else 0.0,
         open_loop=system.filter.correction == "feedforward",
     )
 
@@ -95,12 +100,14 @@ def states(system: System, recording: Recording) -> tuple[str, ...]:
     return (*names, *(name for name in wanted if name not in names))
 
 
-def budget(imu: Imu) -> dict[str, Array]:
+def budget(imu: Imu, gyro_density: float = 0.0) -> dict[str, Array]:
     """Process noise and turn-on errors in SI units, from a named grade or from the recipe.
 
     Parameters
     ----------
     imu : Imu
+    gyro_density : float
+        What the log's gyros show of vibration [rad/sqrt(s)]; a named grade does without.
 
     Returns
     -------
@@ -108,7 +115,8 @@ def budget(imu: Imu) -> dict[str, Array]:
         "noise" as `propagate` takes it, then the standard deviations of the turn-on errors.
     """
     if not imu.grade:
-        noise = [imu.gyro_noise * DEG, imu.accel_noise, imu.gyro_walk * DEG, imu.accel_walk, imu.turn]
+        gyro_noise = math.hypot(imu.gyro_noise * DEG, imu.vibration * gyro_density)
+        noise = [gyro_noise, imu.accel_noise, imu.gyro_walk * DEG, imu.accel_walk, imu.turn]
         bias = (imu.gyro_bias_sd * DEG, imu.accel_bias_sd, imu.gyro_scale_sd, imu.accel_scale_sd)
     else:
         g = grade(imu.grade)
@@ -128,9 +136,7 @@ def budget(imu: Imu) -> dict[str, Array]:
     return found | {"noise": np.array([*np.square(noise), 0.0, 0.0])}
 
 
-def _initial(
-    names: tuple[str, ...], angles: Array, system: System, recording: Recording
-) -> dict[str, Array]:
+def _initial(names: tuple[str, ...], angles: Array, system: System, recording: Recording) -> dict[str, Array]:
     known = {
         "mounting": angles,
         "axle": np.array([system.nonholonomic.axle]),
@@ -165,7 +171,9 @@ def _sensors(system: System, recording: Recording, angles: Array) -> dict[str, S
             system.odometer.sd, system.odometer.correlation, (float(angles[0]), float(angles[1]))
         ),
     }
-    return {name: known[name] for name in system.sensors if name != "odometer" or recording.odometer is not None}
+    return {
+        name: known[name] for name in system.sensors if name != "odometer" or recording.odometer is not None
+    }
 
 
 def _constraints(system: System, angles: Array) -> dict[str, Constraint]:

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-
 from msgspec.structs import replace
 
 from gapless import earth
@@ -14,8 +13,9 @@ from gapless.alignment.clock import Curve, Offset, offset, path_curve, velocity_
 from gapless.feed import events
 from gapless.navigator import Navigator
 from gapless.recording import Array, Recording, Trajectory
+from gapless.sensors.vibration import gyro_density
 from gapless.solution import Decision
-from gapless.systems.build import lever_arm, settings
+from gapless.systems.build import budget, lever_arm, settings
 from gapless.systems.recipe import System
 from gapless.units import DEG
 
@@ -48,11 +48,14 @@ class Decided:
     offsets : dict of str to float
         Clock offset by channel [s].
     mounting : Mounting
+    gyro_density : float
+        Of the log's vibration [rad/sqrt(s)].
     decisions : tuple of Decision
     """
 
     offsets: dict[str, float]
     mounting: Mounting
+    gyro_density: float
     decisions: tuple[Decision, ...]
 
 
@@ -74,7 +77,12 @@ def decide(recording: Recording, system: System, horizon: float = np.inf) -> Dec
     past = recording if horizon == np.inf else recording.slice(-np.inf, horizon)
     passes = _FirstPass(past, system)
     passes.run()
-    return Decided(passes.offsets, passes.mounting, (*passes.clock_decisions(), *passes.mounting_decisions()))
+    decisions = (
+        noise_decision(system, passes.density),
+        *passes.clock_decisions(),
+        *passes.mounting_decisions(),
+    )
+    return Decided(passes.offsets, passes.mounting, passes.density, decisions)
 
 
 class _FirstPass:
@@ -88,6 +96,7 @@ class _FirstPass:
         self.mounting = _given_mounting(system)
         self.span = 0.0
         self.learned = False
+        self.density = gyro_density(past.imu)
 
     def run(self) -> None:
         """Up to four passes; each starts from the offsets of the one before."""
@@ -95,12 +104,15 @@ class _FirstPass:
             navigator = self._navigate(jitter)
             if len(navigator.journal.times) < 300:
                 return
-            if self._learn(navigator) < 0.02 and jitter <= 0.1:
+            if self._learn(navigator) < 0.02:
                 return
 
     def _navigate(self, jitter: float) -> Navigator:
-        system = replace(self.system, gnss=replace(self.system.gnss, jitter=jitter))
-        navigator = Navigator(settings(system, self.past, self.offsets, _given_mounting(system)))
+        gnss = replace(self.system.gnss, jitter=jitter)
+        system = replace(self.system, gnss=gnss, filter=replace(self.system.filter, tick=0.2))
+        navigator = Navigator(
+            settings(system, self.past, self.offsets, _given_mounting(system), self.density)
+        )
         for event in events(self.past, self.offsets, thin=0.45):
             navigator.step(event)
             if navigator.aligned and navigator.time > navigator.journal.alignments[0][0] + ENOUGH:
@@ -205,13 +217,9 @@ def static_decisions(recording: Recording, system: System) -> list[Decision]:
     imu, gnss = recording.imu, recording.gnss
     lever = tuple(float(a) for a in lever_arm(system, recording))
     rate = 1.0 / float(np.median(np.diff(gnss.time))) if len(gnss) > 1 else 0.0
-    grade = system.imu.grade or "default"
-    source = "user" if system.imu.grade or system.imu != type(system.imu)() else "default"
-    noise = "named grade" if system.imu.grade else "suits consumer MEMS with biases of 0.5 m/s^2 and 0.3 deg/s"
     found = [
         Decision("IMU rate", round(imu.rate, 2), "Hz", "data", f"{len(imu)} samples, median interval"),
         Decision("GNSS rate", round(rate, 2), "Hz", "data", f"{len(gnss)} fixes, {_kinds(recording)}"),
-        Decision("process noise", grade, "", source, noise),
     ]
     if system.gnss.lever_arm is not None:
         return [*found, Decision("antenna lever arm", lever, "m", "user", "given in the configuration")]
@@ -220,10 +228,38 @@ def static_decisions(recording: Recording, system: System) -> list[Decision]:
     return [*found, Decision("antenna lever arm", lever, "m", "default", "none is stated; taken as zero")]
 
 
+def noise_decision(system: System, density: float) -> Decision:
+    """Process noise of the gyros, the part of it that vibration decides.
+
+    Parameters
+    ----------
+    system : System
+    density : float
+        What the log's gyros show of vibration [rad/sqrt(s)].
+
+    Returns
+    -------
+    Decision
+    """
+    name, imu = "process noise, gyro", system.imu
+    value = round(float(np.sqrt(budget(imu, density)["noise"][0])) / DEG, 4)
+    unit = "deg/sqrt(s)"
+    if imu.grade:
+        return Decision(name, value, unit, "user", f"grade {imu.grade}")
+    floor = f"{imu.gyro_noise:g} for consumer MEMS (biases up to 0.5 m/s^2 and 0.3 deg/s)"
+    if density == 0.0 or imu.vibration == 0.0:
+        return Decision(name, value, unit, "default", floor)
+    share = f"{100.0 * imu.vibration:g} % of the {density / DEG:.3f} that the log shows from sample to sample"
+    return Decision(name, value, unit, "data", f"{floor}, and {share}")
+
+
 def _kinds(recording: Recording) -> str:
     words = {1: "single point", 2: "differential", 4: "RTK fixed", 5: "RTK float"}
     codes, counts = np.unique(recording.gnss.fix, return_counts=True)
-    named = [f"{words.get(int(c), 'other')} {100 * n / counts.sum():.0f} %" for c, n in zip(codes, counts, strict=True)]
+    named = [
+        f"{words.get(int(c), 'other')} {100 * n / counts.sum():.0f} %"
+        for c, n in zip(codes, counts, strict=True)
+    ]
     velocity = "with velocity" if recording.gnss.has_velocity else "without velocity"
     return f"{', '.join(named)}, {velocity}"
 

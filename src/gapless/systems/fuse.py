@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
+from dataclasses import replace
 
 import numpy as np
 
@@ -10,7 +11,7 @@ from gapless.errors import AlignmentError
 from gapless.events import Event, ImuBlock
 from gapless.feed import events
 from gapless.journal import Journal
-from gapless.navigator import Navigator
+from gapless.navigator import Navigator, Settings
 from gapless.recording import Recording
 from gapless.scenarios import Outage, withhold
 from gapless.solution import Decision, Solution
@@ -64,9 +65,16 @@ def fuse(
         navigator, decided = _on_the_way(open_sky, system, rate, progress)
     else:
         decided = decide(open_sky, system, first)
-        navigator = Navigator(settings(system, open_sky, decided.offsets, decided.mounting, 1.0 / rate))
+        navigator = Navigator(_settings(open_sky, system, decided, rate))
         _fold(navigator, events(open_sky, decided.offsets), recording.start, progress)
     return _collect(recording, system, outages, navigator, decided)
+
+
+def _settings(
+    recording: Recording, system: System, decided: Decided, rate: float, lateness: float = 0.0
+) -> Settings:
+    built = settings(system, recording, decided.offsets, decided.mounting, decided.gyro_density, 1.0 / rate)
+    return replace(built, lateness=max(built.lateness, lateness))
 
 
 def withhold_from(recording: Recording, outages: Iterable[Outage]) -> Recording:
@@ -81,8 +89,6 @@ def withhold_from(recording: Recording, outages: Iterable[Outage]) -> Recording:
     -------
     Recording
     """
-    from dataclasses import replace
-
     return replace(recording, gnss=withhold(recording.gnss, tuple(outages), recording.start))
 
 
@@ -105,8 +111,7 @@ def _on_the_way(
     """Decide at fixed data times from the past alone; the navigator goes on with what was decided."""
     cuts = [recording.start + s for s in STAGES if s < recording.duration]
     decided = decide(recording, system, recording.start)
-    longest = {"position": -1.5, "velocity": -1.5}
-    navigator = Navigator(settings(system, recording, longest, decided.mounting, 1.0 / rate))
+    navigator = Navigator(_settings(recording, system, decided, rate, lateness=1.6))
     for begin, end in zip([-np.inf, *cuts], [*cuts, np.inf], strict=True):
         _fold(navigator, events(recording, decided.offsets, begin, end), recording.start, progress)
         if np.isfinite(end):
@@ -163,5 +168,9 @@ def _stops(journal: Journal) -> list[Decision]:
     times = np.array(channel.time)
     edges = np.flatnonzero(np.diff(times) > 2.0)
     total = float(np.sum(np.minimum(np.diff(times), 0.3)))
-    evidence = f"{len(times)} zero-velocity updates; spreads like this drive's own stops, not like its driving"
-    return [Decision("stationary stretches", float(len(edges) + 1), f"in all {total:.0f} s", "data", evidence)]
+    evidence = (
+        f"{len(times)} zero-velocity updates; spreads like this drive's own stops, not like its driving"
+    )
+    return [
+        Decision("stationary stretches", float(len(edges) + 1), f"in all {total:.0f} s", "data", evidence)
+    ]

@@ -27,13 +27,15 @@ class Imu(Struct, forbid_unknown_fields=True, frozen=True):
     """Process noise and turn-on errors; `grade` names a sensor and replaces them all.
 
     Densities are per axis: degrees and m/s per root second; random walks of the biases in
-    deg/s and m/s^2 per root second; `turn` is the share of a turn that goes wrong.
+    deg/s and m/s^2 per root second; `turn` is the share of a turn that goes wrong; `vibration` is
+    the share of the log's own high-frequency gyro density that is added to `gyro_noise`.
     """
 
     grade: str = ""
-    gyro_noise: Positive = 0.075
+    gyro_noise: Positive = 0.025
+    vibration: NonNegative = 0.25
     accel_noise: Positive = 0.02
-    gyro_walk: NonNegative = 0.0007
+    gyro_walk: NonNegative = 0.0003
     accel_walk: NonNegative = 0.0006
     turn: NonNegative = 0.0012
     gyro_bias_sd: Positive = 0.3
@@ -166,7 +168,7 @@ def parse(text: str, where: str) -> System:
 
 
 def _explain(message: str) -> str:
-    """msgspec's message with a dotted path, and the keys that there are where one is unknown."""
+    """Msgspec's message with a dotted path, and the keys that there are where one is unknown."""
     text, _, place = message.partition(" - at `")
     path = place.rstrip("`").removeprefix("$").lstrip(".")
     if "unknown field" in text:
@@ -201,7 +203,9 @@ def load(name: str | Path) -> System:
             raise ConfigError(f"{path}: cannot be read ({error}); give a TOML file") from None
     found = files("gapless.systems").joinpath(f"{name}.toml")
     if not found.is_file():
-        raise ConfigError(f"system {name!r} is unknown; choose from {', '.join(names())} or give a .toml file")
+        raise ConfigError(
+            f"system {name!r} is unknown; choose from {', '.join(names())} or give a .toml file"
+        )
     return parse(found.read_text(encoding="utf-8"), f"{name}.toml")
 
 
