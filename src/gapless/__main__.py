@@ -2,4 +2,4 @@
 
 from gapless.cli import main
 
-main(prog_name="gapless")
+main()

@@ -14,9 +14,6 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any, TypeVar, cast
 
-import numba
-from numba.extending import register_jitable
-
 F = TypeVar("F", bound=Callable[..., Any])
 
 _PACKAGE = Path(__file__).parent
@@ -33,9 +30,12 @@ def _cache_dir() -> Path:
 
 
 if "NUMBA_CACHE_DIR" not in os.environ:
-    numba.config.CACHE_DIR = str(_cache_dir())
-    if not os.path.isdir(numba.config.CACHE_DIR) and sys.stderr.isatty():
+    os.environ["NUMBA_CACHE_DIR"] = str(_cache_dir())
+    if not os.path.isdir(os.environ["NUMBA_CACHE_DIR"]):
         print("gapless: compiling kernels, once per version (about ten seconds)", file=sys.stderr)
+
+import numba  # noqa: E402 (reads the variable when it is imported)
+from numba.extending import register_jitable  # noqa: E402
 
 
 def kernel(function: F) -> F:
@@ -56,4 +56,5 @@ def kernel(function: F) -> F:
 
 def inline(function: F) -> F:
     """Let kernels call a plain Python function, which stays one for Python."""
-    return cast(F, register_jitable(forceinline=True)(function))
+    inlined: F = register_jitable(forceinline=True)(function)
+    return inlined

@@ -70,8 +70,8 @@ def _fixes(
     if thin > 0.0:
         gnss = gnss.take(_thinned(gnss.time, thin))
     gaps = _intervals(gnss.time).tolist()
-    has_position = np.isfinite(gnss.lla).all(axis=1).tolist()
-    has_velocity = np.isfinite(gnss.v_n).all(axis=1).tolist()
+    has_position = np.asarray(np.isfinite(gnss.lla).all(axis=1))
+    has_velocity = np.asarray(np.isfinite(gnss.v_n).all(axis=1))
     late = offsets.get("position", 0.0), offsets.get("velocity", 0.0)
     for i, t in enumerate(gnss.time.tolist()):
         readings: tuple[Reading, ...] = ()
@@ -96,4 +96,4 @@ def _intervals(time: Array) -> Array:
     if len(time) < 2:
         return np.ones(len(time))
     gaps = np.diff(time)
-    return np.clip(np.concatenate([[np.median(gaps)], gaps]), 0.01, 10.0)
+    return np.asarray(np.clip(np.concatenate([[np.median(gaps)], gaps]), 0.01, 10.0))

@@ -201,4 +201,5 @@ def _euler_variance(var: Array, n: int, euler: Array) -> Array:
     across = s * s * nn + c * c * ee - 2.0 * c * s * ne
     t = np.tan(euler[:, 1])
     heading = dd + t * t * along + 2.0 * t * (c * nd + s * ed)
-    return np.maximum(np.column_stack([along / np.cos(euler[:, 1]) ** 2, across, heading]), 0.0)
+    variances = np.column_stack([along / np.cos(euler[:, 1]) ** 2, across, heading])
+    return np.asarray(np.maximum(variances, 0.0))

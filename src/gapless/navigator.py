@@ -2,108 +2,31 @@
 
 from __future__ import annotations
 
-import bisect
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from itertools import pairwise
 from typing import Any, Self
 
 import numpy as np
 
-from gapless.alignment.coarse import Aligner, Start
+from gapless.alignment.coarse import Start
 from gapless.events import Event, ImuBlock, Motion, Reading
-from gapless.filters.adaptation.gate import Gate
 from gapless.filters.update import assess, correct
 from gapless.inertial import propagate as at
 from gapless.inertial.belief import Belief, inject
 from gapless.inertial.increments import split
-from gapless.inertial.layout import ROW, Layout
+from gapless.inertial.layout import ROW
 from gapless.journal import Journal
-from gapless.measurements.base import Constraint, Observation, Sensor
-from gapless.recording import Array
+from gapless.measurements.base import Observation
+from gapless.settings import Settings
+from gapless.state import Past, State
 from gapless.units import DEG
+
+__all__ = ["Navigator", "Settings"]
 
 EPS = 1e-6
 """Times closer than this are the same instant [s]."""
 GAP = 0.5
 """A longer silence of the IMU is not bridged: it ends in a new alignment [s]."""
-
-
-@dataclass(frozen=True)
-class Settings:
-    """What a navigator is built from; everything in SI units.
-
-    Parameters
-    ----------
-    layout : Layout
-        Error states.
-    noise : ndarray, shape (7,)
-        Process noise, as `propagate` takes it.
-    initial_sd : mapping of str to float or ndarray
-        Standard deviation of each block at the start (position, velocity, heading come from the fix).
-    initial : mapping of str to ndarray
-        Starting values of additive blocks; zero where not named.
-    sensors : mapping of str to Sensor
-        By channel.
-    constraints : mapping of str to Constraint
-        By channel; copied, never changed.
-    gate : Gate
-        Copied.
-    aligner : Aligner
-        Copied.
-    tick : float
-        Time between constraint updates [s].
-    period : float
-        Time between covariance steps [s].
-    row : float
-        Time between journal rows [s].
-    lateness : float
-        How late a reading may arrive and still be put in its place [s].
-    open_loop : bool
-        Feed-forward: never correct the nominal state.
-    """
-
-    layout: Layout
-    noise: Array
-    initial_sd: Mapping[str, float | Array]
-    initial: Mapping[str, Array]
-    sensors: Mapping[str, Sensor]
-    constraints: Mapping[str, Constraint]
-    gate: Gate = field(default_factory=Gate)
-    aligner: Aligner = field(default_factory=Aligner)
-    tick: float = 0.1
-    period: float = 0.05
-    row: float = 0.1
-    lateness: float = 0.0
-    open_loop: bool = False
-
-
-@dataclass
-class _State:
-    """Everything that changes, but for the journal."""
-
-    belief: Belief
-    gate: Gate
-    constraints: dict[str, Constraint]
-    aligner: Aligner | None
-    pending: list[Reading] = field(default_factory=list)
-    heard: dict[str, float] = field(default_factory=dict)
-    clock: float = -math.inf
-    next_row: float = -math.inf
-    aligned: bool = False
-
-    def copy(self) -> _State:
-        return _State(
-            self.belief.copy(),
-            self.gate.copy(),
-            {name: c.copy() for name, c in self.constraints.items()},
-            None if self.aligner is None else self.aligner.copy(),
-            list(self.pending),
-            dict(self.heard),
-            self.clock,
-            self.next_row,
-            self.aligned,
-        )
 
 
 class Navigator:
@@ -124,8 +47,8 @@ class Navigator:
         self.journal = Journal(settings.layout)
         belief = Belief(settings.layout, settings.open_loop)
         constraints = {name: c.copy() for name, c in settings.constraints.items()}
-        self._state = _State(belief, settings.gate.copy(), constraints, settings.aligner.copy())
-        self._past: list[tuple[_State, list[Event]]] = []
+        self._state = State(belief, settings.gate.copy(), constraints, settings.aligner.copy())
+        self._past = Past(settings.lateness)
         self.dropped = 0
 
     @property
@@ -154,7 +77,7 @@ class Navigator:
             `Settings.lateness`.
         """
         if isinstance(event, ImuBlock):
-            self._remember(event)
+            self._past.before(self._state, event)
             self._feel(event)
         elif event:
             self._hear(event)
@@ -167,8 +90,7 @@ class Navigator:
         object
             For `restore`; independent of what happens next.
         """
-        past = [(state, list(events)) for state, events in self._past]
-        return self._state.copy(), past, self.journal.mark(), self.dropped
+        return self._state.copy(), self._past.copy(), self.journal.mark(), self.dropped
 
     def restore(self, snapshot: Any) -> None:
         """Go back to a snapshot, journal included.
@@ -180,7 +102,7 @@ class Navigator:
         """
         state, past, mark, self.dropped = snapshot
         self._state = state.copy()
-        self._past = [(s, list(events)) for s, events in past]
+        self._past = past.copy()
         self.journal.rewind(mark)
 
     def fork(self) -> Self:
@@ -192,7 +114,7 @@ class Navigator:
         """
         new = type(self)(self.settings)
         new._state = self._state.copy()
-        new._past = [(s, list(events)) for s, events in self._past]
+        new._past = self._past.copy()
         new.journal.after(self.journal)
         return new
 
@@ -205,42 +127,24 @@ class Navigator:
         if min(r.time for r in kept) < self._state.clock - EPS:
             self._rewind(kept)
         else:
-            self._await(kept)
-            if self._past:
-                self._past[-1][1].append(kept)
+            self._state.expect(kept)
+            self._past.heard(kept)
             self._apply_due()
-
-    def _await(self, readings: tuple[Reading, ...]) -> None:
-        for reading in readings:
-            bisect.insort(self._state.pending, reading, key=lambda r: r.time)
-
-    def _remember(self, block: ImuBlock) -> None:
-        """Keep what a late reading would need: the state before the block, and the block."""
-        lateness = self.settings.lateness
-        if lateness <= 0.0:
-            return
-        self._past.append((self._state.copy(), [block]))
-        while len(self._past) > 1 and self._past[1][0].clock < self._state.clock - lateness:
-            self._past.pop(0)
 
     def _rewind(self, late: tuple[Reading, ...]) -> None:
         """Go back to before a late reading, put it in its place, and replay."""
-        first = min(r.time for r in late)
-        k = len(self._past) - 1
-        while k >= 0 and self._past[k][0].clock > first + EPS:
-            k -= 1
-        if k < 0:
+        found = self._past.rewind(min(r.time for r in late) + EPS)
+        if found is None:
             self.dropped += len(late)
             return
-        events = [event for _, kept in self._past[k:] for event in kept]
-        self._state = self._past[k][0].copy()
-        del self._past[k:]
+        state, events = found
+        self._state = state.copy()
         for event in (*events, late):
             if not isinstance(event, ImuBlock):
-                self._await(event)
+                self._state.expect(event)
         for event in events:
             if isinstance(event, ImuBlock):
-                self._remember(event)
+                self._past.before(self._state, event)
                 self._apply_due()
                 self._feel(event)
         self._apply_due()
@@ -269,7 +173,7 @@ class Navigator:
         """Run through samples that may have gaps between them."""
         begin = block.time - block.dt
         cuts = [0, *(np.flatnonzero(begin[1:] - block.time[:-1] > GAP) + 1).tolist(), len(begin)]
-        for first, last in zip(cuts[:-1], cuts[1:], strict=True):
+        for first, last in pairwise(cuts):
             if begin[first] - self._state.clock > GAP:
                 self._gap(float(begin[first]))
             self._through(block if len(cuts) == 2 else block.rows(first, last))

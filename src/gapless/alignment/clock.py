@@ -11,6 +11,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from gapless import attitude
 from gapless.recording import Array, Imu, Trajectory
@@ -101,7 +102,7 @@ def offset(
     return _best(shifts, np.array(misfits), np.array(counts, float), share)
 
 
-def _windows(time: Array, clock: Array, window: float, span: float) -> list[Array]:
+def _windows(time: Array, clock: Array, window: float, span: float) -> list[NDArray[np.int64]]:
     """Rows of each window that holds enough readings and no gap of the IMU."""
     rows = []
     for start in np.arange(time[0], time[-1] - 0.5 * window, window) if len(time) else []:

@@ -160,10 +160,9 @@ class Aligner:
         rows = self._rows(t0, time)
         gained = np.zeros(3)
         force = np.array([0.0, 0.0, -9.8])
-        q = np.array([1.0, 0.0, 0.0, 0.0])
         if len(rows) > 3 and time - t0 > 0.5:
             gained = (v_n - v0) / (time - t0)
-            force, q = _carried(rows, np.zeros(3) if bias is None else bias)
+            force = _carried(rows, np.zeros(3) if bias is None else bias)
         elif self.blocks:
             recent = self._rows(now - 0.5, now)
             force = recent[:, 5:8].sum(axis=0) / max(recent[:, 1].sum(), 1e-9)
@@ -210,12 +209,12 @@ def _turn(rows: Array, bias: Array | None) -> tuple[Array, Array]:
     return q, before
 
 
-def _carried(rows: Array, bias: Array) -> tuple[Array, Array]:
-    """Mean specific force in the body axes of the end, and the rotation since the start."""
+def _carried(rows: Array, bias: Array) -> Array:
+    """Mean specific force in the body axes of the end."""
     q, before = _turn(rows, bias)
     c = attitude.to_matrix(before)
     total = np.einsum("kij,kj->i", c, rows[:, 5:8])
-    return attitude.to_matrix(q).T @ total / rows[:, 1].sum(), q
+    return np.asarray(attitude.to_matrix(q).T @ total / rows[:, 1].sum())
 
 
 def _level(force: Array, gained: Array, heading: float) -> tuple[float, float]:

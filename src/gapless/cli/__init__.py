@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from typing import Any
 
 import click
@@ -67,7 +68,7 @@ def _leave(ctx: click.Context, line: str, code: int) -> None:
 
 @click.group(cls=Verbs, context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 80})
 @click.version_option(__version__, message="%(prog)s %(version)s")
-def main() -> None:
+def gapless() -> None:
     r"""Fuse an IMU with GNSS, and keep navigating when GNSS goes silent.
 
     A first try, without data of your own:
@@ -80,4 +81,14 @@ def main() -> None:
 
 
 for _verb in (inspect, fuse, simulate, convert):
-    main.add_command(_verb)
+    gapless.add_command(_verb)
+
+
+def main() -> None:
+    """Run the process `gapless`.
+
+    numba imports scipy.linalg wherever it finds it, 0.13 s, for matrix products that no kernel of
+    ours uses. Nothing else in this process wants it, so it is not found.
+    """
+    sys.modules.setdefault("scipy", None)  # type: ignore[arg-type]
+    gapless(prog_name="gapless")

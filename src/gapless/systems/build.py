@@ -81,6 +81,12 @@ def settings(
     )
 
 
+def _lateness(offsets: Mapping[str, float]) -> float:
+    """How late readings arrive, with some slack; 0 where none does."""
+    most = max(0.0, *(-late for late in offsets.values()))
+    return most + 0.05 if most > 0.0 else 0.0
+
+
 def states(system: System, recording: Recording) -> tuple[str, ...]:
     """Optional state blocks: those of the recipe, and those that its sensors and constraints need.
 

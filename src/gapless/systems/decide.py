@@ -128,7 +128,7 @@ class _FirstPass:
             self.found[channel] = estimate
             settled = abs(estimate.value) > 2.0 * estimate.sd
             self.offsets[channel] = estimate.value if settled else 0.0
-        return max(abs(self.offsets[c] - before[c]) for c in CHANNELS)
+        return float(max(abs(self.offsets[c] - before[c]) for c in CHANNELS))
 
     def _estimates(self, path: Trajectory, blocks: dict[str, Array]) -> dict[str, Offset]:
         gnss, odometer = self.past.gnss, self.past.odometer

@@ -42,7 +42,7 @@ class _Run(NamedTuple):
     """Surprising observations in a row that agree with each other."""
 
     start: float
-    count: int
+    length: int
     last: float
     z: Array
     after_gap: bool
@@ -119,7 +119,7 @@ class Gate:
         if run is None or not agree:
             run = _Run(time, 1, time, z, gap)
         else:
-            run = _Run(run.start, run.count + 1, time, z, run.after_gap)
+            run = _Run(run.start, run.length + 1, time, z, run.after_gap)
         self.runs[channel] = run
         return run
 
@@ -127,9 +127,9 @@ class Gate:
         if channel not in self.large:
             return False
         if run.after_gap:
-            return run.count >= 2 and run.last - run.start >= 0.5
+            return run.length >= 2 and run.last - run.start >= 0.5
         large = float(np.linalg.norm(z[:2])) > self.large[channel]
-        return large and run.count >= 4 and run.last - run.start >= self.patience
+        return large and run.length >= 4 and run.last - run.start >= self.patience
 
     def copy(self) -> Self:
         """An independent copy.

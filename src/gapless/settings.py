@@ -1,0 +1,61 @@
+"""What a navigator is built from."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from gapless.alignment.coarse import Aligner
+from gapless.filters.adaptation.gate import Gate
+from gapless.inertial.layout import Layout
+from gapless.measurements.base import Constraint, Sensor
+from gapless.recording import Array
+
+
+@dataclass(frozen=True)
+class Settings:
+    """What a navigator is built from; everything in SI units.
+
+    Parameters
+    ----------
+    layout : Layout
+        Error states.
+    noise : ndarray, shape (7,)
+        Process noise, as `propagate` takes it.
+    initial_sd : mapping of str to float or ndarray
+        Standard deviation of each block at the start (position, velocity, heading come from the fix).
+    initial : mapping of str to ndarray
+        Starting values of additive blocks; zero where not named.
+    sensors : mapping of str to Sensor
+        By channel.
+    constraints : mapping of str to Constraint
+        By channel; copied, never changed.
+    gate : Gate
+        Copied.
+    aligner : Aligner
+        Copied.
+    tick : float
+        Time between constraint updates [s].
+    period : float
+        Time between covariance steps [s].
+    row : float
+        Time between journal rows [s].
+    lateness : float
+        How late a reading may arrive and still be put in its place [s].
+    open_loop : bool
+        Feed-forward: never correct the nominal state.
+    """
+
+    layout: Layout
+    noise: Array
+    initial_sd: Mapping[str, float | Array]
+    initial: Mapping[str, Array]
+    sensors: Mapping[str, Sensor]
+    constraints: Mapping[str, Constraint]
+    gate: Gate = field(default_factory=Gate)
+    aligner: Aligner = field(default_factory=Aligner)
+    tick: float = 0.1
+    period: float = 0.05
+    row: float = 0.1
+    lateness: float = 0.0
+    open_loop: bool = False

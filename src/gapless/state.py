@@ -1,0 +1,147 @@
+"""What a navigator remembers: its present state, and the recent past for readings that come late."""
+
+from __future__ import annotations
+
+import bisect
+import math
+from dataclasses import dataclass, field
+
+from gapless.alignment.coarse import Aligner
+from gapless.events import Event, ImuBlock, Reading
+from gapless.filters.adaptation.gate import Gate
+from gapless.inertial.belief import Belief
+from gapless.measurements.base import Constraint
+
+
+@dataclass
+class State:
+    """Everything of a navigator that changes, but for its journal.
+
+    Parameters
+    ----------
+    belief : Belief
+    gate : Gate
+    constraints : dict of str to Constraint
+    aligner : Aligner or None
+        None once there is an attitude.
+    pending : list of Reading
+        Readings that hold for a time still to come, in its order.
+    heard : dict of str to float
+        When each channel was last used [s].
+    clock : float
+        End of the last sample taken in [s].
+    next_row : float
+        When the next journal row is due [s].
+    aligned : bool
+        Whether there ever was an attitude.
+    """
+
+    belief: Belief
+    gate: Gate
+    constraints: dict[str, Constraint]
+    aligner: Aligner | None
+    pending: list[Reading] = field(default_factory=list)
+    heard: dict[str, float] = field(default_factory=dict)
+    clock: float = -math.inf
+    next_row: float = -math.inf
+    aligned: bool = False
+
+    def copy(self) -> State:
+        """An independent copy.
+
+        Returns
+        -------
+        State
+        """
+        return State(
+            self.belief.copy(),
+            self.gate.copy(),
+            {name: c.copy() for name, c in self.constraints.items()},
+            None if self.aligner is None else self.aligner.copy(),
+            list(self.pending),
+            dict(self.heard),
+            self.clock,
+            self.next_row,
+            self.aligned,
+        )
+
+    def expect(self, readings: tuple[Reading, ...]) -> None:
+        """Put readings in line.
+
+        Parameters
+        ----------
+        readings : tuple of Reading
+        """
+        for reading in readings:
+            bisect.insort(self.pending, reading, key=lambda r: r.time)
+
+
+class Past:
+    """States before each recent block, and what was fed since: enough to put a late reading in its place.
+
+    Parameters
+    ----------
+    lateness : float
+        How far back it reaches [s]; 0 keeps nothing.
+    """
+
+    def __init__(self, lateness: float) -> None:
+        self.lateness = lateness
+        self.entries: list[tuple[State, list[Event]]] = []
+
+    def before(self, state: State, block: ImuBlock) -> None:
+        """Keep the state that a block is about to change, and the block.
+
+        Parameters
+        ----------
+        state : State
+        block : ImuBlock
+        """
+        if self.lateness <= 0.0:
+            return
+        self.entries.append((state.copy(), [block]))
+        while len(self.entries) > 1 and self.entries[1][0].clock < state.clock - self.lateness:
+            self.entries.pop(0)
+
+    def heard(self, readings: tuple[Reading, ...]) -> None:
+        """Keep readings that arrived in time.
+
+        Parameters
+        ----------
+        readings : tuple of Reading
+        """
+        if self.entries:
+            self.entries[-1][1].append(readings)
+
+    def rewind(self, time: float) -> tuple[State, list[Event]] | None:
+        """The latest state kept that is not later than a time, and all that was fed after it.
+
+        Parameters
+        ----------
+        time : float
+            [s]
+
+        Returns
+        -------
+        (State, list of Event) or None
+            None where the time is beyond what is kept. What is returned is forgotten.
+        """
+        k = len(self.entries) - 1
+        while k >= 0 and self.entries[k][0].clock > time:
+            k -= 1
+        if k < 0:
+            return None
+        state, events = self.entries[k][0], [e for _, fed in self.entries[k:] for e in fed]
+        del self.entries[k:]
+        return state, events
+
+    def copy(self) -> Past:
+        """An independent copy; states are never changed once kept, so they are shared.
+
+        Returns
+        -------
+        Past
+        """
+        new = Past(self.lateness)
+        new.entries = [(state, list(events)) for state, events in self.entries]
+        return new
