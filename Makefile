@@ -1,0 +1,50 @@
+# Two of these do all the set-up: make demo, make test. Both leave .venv/bin/gapless behind.
+
+PYTHON ?= python3
+VENV := .venv
+BIN := $(VENV)/bin
+PIP := $(BIN)/python -m pip --quiet --disable-pip-version-check
+DEMO := out/demo
+
+.PHONY: demo test bench docs clean
+
+demo: $(VENV)/.run  ## simulate a drive and fuse it through three outages
+	@mkdir -p $(DEMO)
+	@rm -rf $(DEMO)/drive
+	@$(BIN)/gapless simulate --duration 800 --mounting 1 -2 4 --late 0.15 --out $(DEMO)/drive
+	@echo
+	@$(BIN)/gapless fuse $(DEMO)/drive --outages every=180,length=60,first=240 --out $(DEMO)
+	@echo
+	@echo "Open this in a browser: $(CURDIR)/$(DEMO)/report.html"
+
+test: $(VENV)/.dev  ## lint, types, floors, tests
+	$(BIN)/ruff check
+	$(BIN)/ruff format --check
+	$(BIN)/mypy
+	$(BIN)/lint-imports
+	$(BIN)/pytest -n 2
+
+bench: $(VENV)/.dev  ## the kernel and the whole process against the same work in C
+	$(BIN)/python benchmarks/kernel.py
+	$(BIN)/python benchmarks/process.py
+
+docs: $(VENV)/.dev  ## run the README's code again; its output, picture and tables follow
+	$(BIN)/python docs/refresh.py
+
+clean:
+	rm -rf $(VENV) out build dist .pytest_cache .mypy_cache .ruff_cache .import_linter_cache .hypothesis
+
+# made again only where pyproject.toml is newer
+$(VENV)/.run: pyproject.toml | $(BIN)/python
+	@echo "installing gapless into $(VENV)"
+	@$(PIP) install -e .
+	@touch $@
+
+$(VENV)/.dev: pyproject.toml | $(BIN)/python
+	@echo "installing gapless and what its tests need into $(VENV)"
+	@$(PIP) install -e '.[dev]'
+	@touch $(VENV)/.run $@
+
+$(BIN)/python:
+	@$(PYTHON) -c 'import sys; sys.exit("gapless needs Python 3.11 or newer; try make PYTHON=python3.12") if sys.version_info < (3, 11) else 0'
+	@$(PYTHON) -m venv $(VENV)
