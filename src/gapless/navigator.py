@@ -45,7 +45,7 @@ class Navigator:
     def __init__(self, settings: Settings) -> None:
         self.settings = settings
         self.journal = Journal(settings.layout)
-        belief = Belief(settings.layout, settings.open_loop)
+        belief = Belief(settings.layout, settings.open_loop, settings.trail)
         constraints = {name: c.copy() for name, c in settings.constraints.items()}
         self._state = State(belief, settings.gate.copy(), constraints, settings.aligner.copy())
         self._past = Past(settings.lateness)
@@ -229,6 +229,7 @@ class Navigator:
                 block.time, block.dt, block.dtheta, block.dvel, first, last, s.period, s.tick, due,
             )  # fmt: skip
             state.clock = float(block.time[first - 1])
+            b.trail.mark(state.clock, b.v_n)
             if b.memory[at.TICK_DT] >= s.tick - at.ROUND:
                 self._tick()
 
@@ -304,7 +305,7 @@ class Navigator:
         """Gate, adapt, correct; False where the observation was rejected."""
         state, n = self._state, self.settings.layout.n
         b = state.belief
-        z = o.z - o.H @ b.error[:n] if b.error.size else o.z
+        z = o.z
         nis, s = assess(b.p, ROW, n, z, o.H, o.R)
         verdict = state.gate.judge(channel, time, z, nis, o.R)
         self.journal.innovation(channel, time, z, s, nis, verdict.factor)
@@ -318,4 +319,5 @@ class Navigator:
             b.error[:n] += dx
         else:
             inject(b.x, dx)
+            b.trail.shift(dx[3:6])
         return True

@@ -44,6 +44,8 @@ class Settings:
         How late a reading may arrive and still be put in its place [s].
     open_loop : bool
         Feed-forward: never correct the nominal state.
+    trail : float
+        Seconds of past velocity that a sensor needs.
     """
 
     layout: Layout
@@ -59,3 +61,4 @@ class Settings:
     row: float = 0.1
     lateness: float = 0.0
     open_loop: bool = False
+    trail: float = 0.0

@@ -11,6 +11,7 @@ from gapless._numba import kernel
 from gapless.attitude import product
 from gapless.inertial import propagate as at
 from gapless.inertial.layout import ROW, Layout
+from gapless.inertial.trail import Trail
 from gapless.recording import Array
 
 CORE_STATES: Final = 15
@@ -52,6 +53,8 @@ class Belief:
     open_loop : bool
         Keep the error estimate beside an uncorrected nominal state (feed-forward) instead of
         feeding it back.
+    trail : float
+        Seconds of past velocity kept, for sensors that average.
 
     Attributes
     ----------
@@ -63,11 +66,12 @@ class Belief:
         Covariance, flat, rows of `ROW`.
     error : ndarray, shape (width,) or (0,)
         Open-loop error estimate.
+    trail : Trail
     """
 
-    __slots__ = ("error", "layout", "memory", "p", "scratch", "x")
+    __slots__ = ("error", "layout", "memory", "p", "scratch", "trail", "x")
 
-    def __init__(self, layout: Layout, open_loop: bool = False) -> None:
+    def __init__(self, layout: Layout, open_loop: bool = False, trail: float = 0.0) -> None:
         self.layout = layout
         self.x = np.zeros(layout.n + 1)
         self.x[at.QUAT] = 1.0
@@ -75,6 +79,7 @@ class Belief:
         self.p = np.zeros(ROW * ROW)
         self.scratch = np.empty((2, ROW * ROW))
         self.error = np.zeros(layout.width if open_loop else 0)
+        self.trail = Trail(trail)
 
     def copy(self) -> Self:
         """An independent belief with the same content.
@@ -87,6 +92,7 @@ class Belief:
         new.layout, new.scratch = self.layout, np.empty_like(self.scratch)
         new.x, new.memory = self.x.copy(), self.memory.copy()
         new.p, new.error = self.p.copy(), self.error.copy()
+        new.trail = self.trail.copy() if self.trail.length else self.trail
         return new
 
     @property

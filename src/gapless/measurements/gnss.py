@@ -107,10 +107,16 @@ def velocity(
     lever: Array,
     memory: Array,
     jitter: float,
+    lag: Array,
+    lag_force: Array,
     v_n: Array,
     sd: Array,
 ) -> tuple[Array, Array, Array]:
-    """Antenna velocity: z = v observed - (v + C_nb (omega x l)).
+    """Antenna velocity, at an instant or as the mean over an epoch that ends now.
+
+    z = v observed - (v + C_nb (omega x l) - lag). The mean over an epoch is the velocity at its end
+    less the mean of what was gained since each instant of it: `lag`, of which `lag_force` came
+    from specific force and so turns with an attitude error.
 
     Parameters
     ----------
@@ -120,6 +126,8 @@ def velocity(
         What the last sample left behind: body rate and specific force.
     jitter : float
         Standard deviation of the time stamp [s].
+    lag, lag_force : ndarray, shape (3,)
+        NED [m/s]; zeros for an instantaneous velocity.
     v_n, sd : ndarray, shape (3,)
         Observed velocity and its standard deviations [m/s].
 
@@ -138,16 +146,17 @@ def velocity(
     c = _matrix(x)
     arm = _lever(x, offsets, lever)
     spin = _cross(rate, arm)
-    swing, late = np.empty(3), np.empty(3)
+    swing, late, turned = np.empty(3), np.empty(3), np.empty(3)
     for i in range(3):
         swing[i] = c[i, 0] * spin[0] + c[i, 1] * spin[1] + c[i, 2] * spin[2]
         late[i] = (c[i, 0] * force[0] + c[i, 1] * force[1] + c[i, 2] * force[2]) * jitter
+        turned[i] = swing[i] - lag_force[i]
     if force[2] != 0.0:
         late[2] += earth.gravity(np.sin(x[0]), x[2]) * jitter
     z = np.empty(3)
     h, r = np.zeros((3, n)), np.zeros((3, 3))
     for i in range(3):
-        z[i] = v_n[i] - x[3 + i] - swing[i]
+        z[i] = v_n[i] - x[3 + i] - swing[i] + lag[i]
         h[i, 3 + i] = 1.0
         for j in range(3):
             r[i, j] = late[i] * late[j]
@@ -159,7 +168,7 @@ def velocity(
             row = _cross(c[i], rate)
             for j in range(3):
                 h[i, offsets[LEVER] + j] = row[j]
-    _minus_skew(swing, h, 0, 6)
+    _minus_skew(turned, h, 0, 6)
     return z, h, r
 
 
@@ -190,13 +199,13 @@ class Position:
         layout = belief.layout
         sd = np.maximum(reading.sd, self.floor) * _share(self.correlation, reading.interval)
         return Observation(
-            *position(belief.x, layout.offsets, layout.n, self.lever, self.jitter, reading.value, sd)
+            *position(belief.estimate(), layout.offsets, layout.n, self.lever, self.jitter, reading.value, sd)
         )
 
 
 @dataclass(frozen=True)
 class Velocity:
-    """GNSS velocity at an instant.
+    """GNSS velocity, at an instant or as the mean over an epoch.
 
     Parameters
     ----------
@@ -208,20 +217,34 @@ class Velocity:
         Least standard deviation believed [m/s].
     jitter : float
         Standard deviation of its time stamps [s], which counts while the vehicle accelerates.
+    averaging : float
+        Length of the epoch that it is the mean of [s]; its readings then hold for the epoch's end.
+        0 for a velocity at an instant.
     """
 
     lever: Array = field(default_factory=lambda: np.zeros(3))
     correlation: float = 1.2
     floor: float = 0.1
     jitter: float = 0.02
+    averaging: float = 0.0
 
     def observe(self, belief: Belief, reading: Reading) -> Observation:
         """Observation of the antenna's velocity; see `Sensor.observe`."""
         layout = belief.layout
         sd = np.maximum(reading.sd, self.floor) * _share(self.correlation, reading.interval)
+        x, lag, lag_force = belief.estimate(), *belief.trail.lag(self.averaging)
         return Observation(
             *velocity(
-                belief.x, layout.offsets, layout.n, self.lever, belief.memory, self.jitter, reading.value, sd
+                x,
+                layout.offsets,
+                layout.n,
+                self.lever,
+                belief.memory,
+                self.jitter,
+                lag,
+                lag_force,
+                reading.value,
+                sd,
             )
         )
 

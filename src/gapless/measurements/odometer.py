@@ -36,6 +36,11 @@ class Odometer:
         sd = self.sd * max(1.0, self.correlation / max(reading.interval, 0.01)) ** 0.5
         return Observation(
             *odometer(
-                belief.x, layout.offsets, layout.n, np.asarray(self.mounting), float(reading.value[0]), sd
+                belief.estimate(),
+                layout.offsets,
+                layout.n,
+                np.asarray(self.mounting),
+                float(reading.value[0]),
+                sd,
             )
         )

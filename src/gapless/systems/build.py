@@ -74,11 +74,27 @@ def settings(
         tick=system.filter.tick,
         period=system.filter.covariance_period,
         row=row,
-        lateness=max(0.0, -min([0.0, *offsets.values()])) + 0.05
-        if min([0.0, *offsets.values()]) < 0
-        else 0.0,
+        lateness=_lateness(stamps(system, offsets)),
+        trail=1.5 * system.gnss.velocity_averaging + 0.2 if system.gnss.velocity_averaging else 0.0,
         open_loop=system.filter.correction == "feedforward",
     )
+
+
+def stamps(system: System, offsets: Mapping[str, float]) -> dict[str, float]:
+    """What is added to each channel's stamps: a mean over an epoch holds for the epoch's end.
+
+    Parameters
+    ----------
+    system : System
+    offsets : mapping of str to float
+        Equivalent instantaneous clock offsets [s].
+
+    Returns
+    -------
+    dict of str to float
+        [s]
+    """
+    return {**offsets, "velocity": offsets.get("velocity", 0.0) + 0.5 * system.gnss.velocity_averaging}
 
 
 def _lateness(offsets: Mapping[str, float]) -> float:
@@ -172,7 +188,9 @@ def _sensors(system: System, recording: Recording, angles: Array) -> dict[str, S
     lever, use = lever_arm(system, recording), system.gnss
     known: dict[str, Sensor] = {
         "position": Position(lever, use.position_correlation, use.position_floor, use.jitter),
-        "velocity": Velocity(lever, use.velocity_correlation, use.velocity_floor, use.jitter),
+        "velocity": Velocity(
+            lever, use.velocity_correlation, use.velocity_floor, use.jitter, use.velocity_averaging
+        ),
         "odometer": Odometer(
             system.odometer.sd, system.odometer.correlation, (float(angles[0]), float(angles[1]))
         ),

@@ -15,7 +15,7 @@ from gapless.navigator import Navigator
 from gapless.recording import Array, Recording, Trajectory
 from gapless.sensors.vibration import gyro_density
 from gapless.solution import Decision
-from gapless.systems.build import budget, lever_arm, settings
+from gapless.systems.build import budget, lever_arm, settings, stamps
 from gapless.systems.recipe import System
 from gapless.units import DEG
 
@@ -113,7 +113,7 @@ class _FirstPass:
         navigator = Navigator(
             settings(system, self.past, self.offsets, _given_mounting(system), self.density)
         )
-        for event in events(self.past, self.offsets, thin=0.45):
+        for event in events(self.past, stamps(system, self.offsets), thin=0.45):
             navigator.step(event)
             if navigator.aligned and navigator.time > navigator.journal.alignments[0][0] + ENOUGH:
                 break

@@ -15,7 +15,7 @@ from gapless.navigator import Navigator, Settings
 from gapless.recording import Recording
 from gapless.scenarios import Outage, withhold
 from gapless.solution import Decision, Solution
-from gapless.systems.build import settings
+from gapless.systems.build import settings, stamps
 from gapless.systems.decide import Decided, decide, static_decisions
 from gapless.systems.recipe import System
 
@@ -66,7 +66,7 @@ def fuse(
     else:
         decided = decide(open_sky, system, first)
         navigator = Navigator(_settings(open_sky, system, decided, rate))
-        _fold(navigator, events(open_sky, decided.offsets), recording.start, progress)
+        _fold(navigator, events(open_sky, stamps(system, decided.offsets)), recording.start, progress)
     return _collect(recording, system, outages, navigator, decided)
 
 
@@ -113,7 +113,8 @@ def _on_the_way(
     decided = decide(recording, system, recording.start)
     navigator = Navigator(_settings(recording, system, decided, rate, lateness=1.6))
     for begin, end in zip([-np.inf, *cuts], [*cuts, np.inf], strict=True):
-        _fold(navigator, events(recording, decided.offsets, begin, end), recording.start, progress)
+        feed = events(recording, stamps(system, decided.offsets), begin, end)
+        _fold(navigator, feed, recording.start, progress)
         if np.isfinite(end):
             decided = decide(recording, system, end)
     return navigator, decided

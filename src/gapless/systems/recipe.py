@@ -55,12 +55,18 @@ class Filter(Struct, forbid_unknown_fields=True, frozen=True):
 
 
 class GnssUse(Struct, forbid_unknown_fields=True, frozen=True):
-    """How far the receiver's own standard deviations are believed; correlation times of its errors."""
+    """How far the receiver's own standard deviations are believed; correlation times of its errors.
+
+    `velocity_averaging` is the length of the epoch that a velocity is the mean of [s], 0 for an
+    instant; the clock offset stays the equivalent instantaneous one. `jitter` is how uneven stamps
+    are [s].
+    """
 
     position_floor: NonNegative = 0.02
     velocity_floor: NonNegative = 0.1
     position_correlation: NonNegative = 0.25
     velocity_correlation: NonNegative = 1.2
+    velocity_averaging: NonNegative = 0.0
     jitter: NonNegative = 0.02
     lever_arm: tuple[float, float, float] | None = None
 
@@ -69,7 +75,7 @@ class Nonholonomic(Struct, forbid_unknown_fields=True, frozen=True):
     """No slip sideways or upwards at the rear axle."""
 
     lateral: Positive = 0.06
-    vertical: Positive = 0.3
+    vertical: Positive = 0.6
     turn: NonNegative = 0.1
     min_speed: Positive = 1.0
     interval: Positive = 0.12
