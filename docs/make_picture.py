@@ -102,7 +102,12 @@ def one_outage(drive: Any, alone: Any, ours: Any, which: int) -> list[str]:
     truth = local(drive, drive.reference.slice(begin - BEFORE, end))
     rows = [solution.trajectory.slice(begin, end) for solution in (alone, ours)]
     adrift, held = (local(drive, each) for each in rows)
-    panel = Panel(400, WIDTH - 130, np.concatenate([truth, adrift, held]))
+    reach = [
+        track + k * SEMI_AXES * each.sd[:, :2]
+        for track, each in ((adrift, rows[0]), (held, rows[1]))
+        for k in (-1, 1)
+    ]
+    panel = Panel(400, WIDTH - 40, np.concatenate([truth, *reach]))
     parts = [panel.line(truth[::3], f'stroke="{INK}" stroke-width="8" stroke-opacity="0.22"')]
     for each, colour in zip(rows, (INS, OURS), strict=True):
         parts += [panel.ellipse(drive, each.take([k]), colour) for k in range(149, len(each), 150)]

@@ -1,0 +1,14 @@
+from click.testing import CliRunner
+
+from gapless.cli import gapless
+
+
+class Shell:
+    """Runs the command line in this process."""
+
+    def __call__(self, *words, code=0):
+        result = CliRunner().invoke(gapless, [str(word) for word in words], prog_name="gapless")
+        if result.exception is not None and not isinstance(result.exception, SystemExit):
+            raise result.exception
+        assert result.exit_code == code, result.output
+        return result
