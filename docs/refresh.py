@@ -1,4 +1,4 @@
-"""Run the README's Python again, and put what it prints, and its picture, in their places.
+"""Run the README's Python again; put what it prints, its picture and the recipe's defaults in place.
 
 python docs/refresh.py
 """
@@ -14,7 +14,9 @@ from pathlib import Path
 from typing import Any
 
 README = Path(__file__).parents[1] / "README.md"
+CONFIGURATION = Path(__file__).parent / "configuration.md"
 _CODE = re.compile(r"```python\n(.*?)```", re.DOTALL)
+_ROW = re.compile(r"\| `(\w+)` \| `.*?` \|")
 _OUTPUT = re.compile(r"(```text\n)(.*?)(```)", re.DOTALL)
 
 
@@ -62,12 +64,41 @@ def run() -> tuple[str, dict[str, Any]]:
     return said.getvalue(), names
 
 
+def with_defaults(page: str) -> str:
+    """The configuration page with the defaults of today; its keys and words stay.
+
+    Parameters
+    ----------
+    page : str
+
+    Returns
+    -------
+    str
+    """
+    import msgspec
+
+    from gapless.systems.recipe import System
+
+    lines: list[str] = []
+    table = recipe = msgspec.to_builtins(System())
+    for line in page.splitlines(keepends=True):
+        if line.startswith("## "):
+            table = recipe.get(line[3:].strip().strip("[]"), recipe)
+        key = _ROW.match(line)
+        if key is not None:
+            shown = msgspec.json.format(msgspec.json.encode(table[key[1]]), indent=0).decode()
+            line = f"| `{key[1]}` | `{shown}` |{line[key.end() :]}"
+        lines.append(line)
+    return "".join(lines)
+
+
 def main() -> None:
-    """Output first, then the picture."""
+    """Output, defaults, picture."""
     printed, _ = run()
     text = README.read_text("utf-8")
     README.write_text(_OUTPUT.sub(lambda m: m[1] + printed + m[3], text, count=1), "utf-8")
     print(printed, end="")
+    CONFIGURATION.write_text(with_defaults(CONFIGURATION.read_text("utf-8")), "utf-8")
 
     import make_picture
 
