@@ -92,8 +92,5 @@ def _thinned(time: Array, least: float) -> list[int]:
 
 
 def _intervals(time: Array) -> Array:
-    """Seconds since the reading before; the first is given the usual one, an outage counts for 10 s."""
-    if len(time) < 2:
-        return np.ones(len(time))
-    gaps = np.diff(time)
-    return np.asarray(np.clip(np.concatenate([[np.median(gaps)], gaps]), 0.01, 10.0))
+    """Seconds since the reading before; the first is given one, and an outage counts for ten."""
+    return np.clip(np.diff(time, prepend=time[:1] - 1.0), 0.01, 10.0)

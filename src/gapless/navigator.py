@@ -124,30 +124,27 @@ class Navigator:
         kept = tuple(r for r in readings if r.channel in self.settings.sensors)
         if not kept:
             return
-        if min(r.time for r in kept) < self._state.clock - EPS:
+        if min(r.time for r in kept) <= self._state.clock + EPS and self.time > -math.inf:
             self._rewind(kept)
         else:
             self._state.expect(kept)
             self._past.heard(kept)
-            self._apply_due()
 
     def _rewind(self, late: tuple[Reading, ...]) -> None:
         """Go back to before a late reading, put it in its place, and replay."""
-        found = self._past.rewind(min(r.time for r in late) + EPS)
+        found = self._past.rewind(min(r.time for r in late) - EPS)
         if found is None:
             self.dropped += len(late)
             return
         state, events = found
         self._state = state.copy()
-        for event in (*events, late):
-            if not isinstance(event, ImuBlock):
-                self._state.expect(event)
+        readings = (*(r for e in events if not isinstance(e, ImuBlock) for r in e), *late)
+        self._state.expect(readings)
         for event in events:
             if isinstance(event, ImuBlock):
                 self._past.before(self._state, event)
-                self._apply_due()
                 self._feel(event)
-        self._apply_due()
+        self._past.heard(readings)
 
     def _apply_due(self) -> None:
         pending, state = self._state.pending, self._state

@@ -66,14 +66,15 @@ class State:
         )
 
     def expect(self, readings: tuple[Reading, ...]) -> None:
-        """Put readings in line.
+        """Put readings in line, but for those that were applied or stand there already.
 
         Parameters
         ----------
         readings : tuple of Reading
         """
         for reading in readings:
-            bisect.insort(self.pending, reading, key=lambda r: r.time)
+            if reading.time > self.clock and not any(reading is waiting for waiting in self.pending):
+                bisect.insort(self.pending, reading, key=lambda r: r.time)
 
 
 class Past:
@@ -82,7 +83,7 @@ class Past:
     Parameters
     ----------
     lateness : float
-        How far back it reaches [s]; 0 keeps nothing.
+        How far back it reaches [s]; at least the last block is kept.
     """
 
     def __init__(self, lateness: float) -> None:
@@ -97,24 +98,25 @@ class Past:
         state : State
         block : ImuBlock
         """
-        if self.lateness <= 0.0:
-            return
         self.entries.append((state.copy(), [block]))
         while len(self.entries) > 1 and self.entries[1][0].clock < state.clock - self.lateness:
             self.entries.pop(0)
 
     def heard(self, readings: tuple[Reading, ...]) -> None:
-        """Keep readings that arrived in time.
+        """Keep readings with the latest block.
 
         Parameters
         ----------
         readings : tuple of Reading
         """
         if self.entries:
-            self.entries[-1][1].append(readings)
+            oldest = self.entries[0][0].clock
+            kept = tuple(r for r in readings if r.time > oldest)
+            if kept:
+                self.entries[-1][1].append(kept)
 
     def rewind(self, time: float) -> tuple[State, list[Event]] | None:
-        """The latest state kept that is not later than a time, and all that was fed after it.
+        """The latest state kept from before a time, and all that was fed after it.
 
         Parameters
         ----------
@@ -127,7 +129,7 @@ class Past:
             None where the time is beyond what is kept. What is returned is forgotten.
         """
         k = len(self.entries) - 1
-        while k >= 0 and self.entries[k][0].clock > time:
+        while k >= 0 and self.entries[k][0].clock >= time:
             k -= 1
         if k < 0:
             return None

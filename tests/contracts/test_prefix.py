@@ -80,9 +80,6 @@ def test_an_outage_is_scored_with_decisions_made_before_it():
         assert np.array_equal(getattr(a, name)[:n], getattr(b, name)[:n]), name
 
 
-@pytest.mark.xfail(
-    strict=True, reason="feed._intervals gives a sensor's first reading the median gap of its whole log"
-)
 def test_the_first_reading_of_a_late_starter_is_not_weighed_by_the_future():
     """An odometer that comes alive after alignment, and changes its rate later on."""
     log = recording("exact", 1.0)

@@ -84,10 +84,6 @@ def test_samples_one_by_one_are_the_block(clock):
     assert belief(live) == belief(whole)
 
 
-@pytest.mark.xfail(
-    strict=True,
-    reason="Aligner.feel drops whole blocks older than 2 window + 2 s: what is left depends on the blocks",
-)
 def test_samples_one_by_one_are_the_block_at_a_standstill_that_gnss_misses():
     """The gyro bias of a stop, from before and after a stretch without fixes."""
     log = recording("exact", 1.0).slice(-np.inf, 45.0)
@@ -116,7 +112,6 @@ def delivered(setup, log, readings, arrivals, until):
     return navigator
 
 
-@pytest.mark.xfail(strict=True, reason="State.expect after Past.rewind: see the two tests below")
 @pytest.mark.parametrize("share", [0.3, 1.0])
 def test_late_readings_end_in_the_same_belief(share):
     """Handed over as they hold, or later and out of order: the same once everything is there."""
@@ -148,21 +143,11 @@ def handed_over(order):
     return belief(navigator)
 
 
-@pytest.mark.xfail(
-    strict=True,
-    reason="a reading that holds for the end of the last sample meets a covariance that is not up to date: "
-    "`due` flushes only where the reading was known before the sample",
-)
 @pytest.mark.parametrize("order", ["0a12", "01a2"])
 def test_a_reading_of_the_present_instant_may_come_before_or_after_the_sample(order):
     assert handed_over(order) == handed_over("a012")
 
 
-@pytest.mark.xfail(
-    strict=True,
-    reason="a replay waits for all readings before it keeps states anew, without their readings: "
-    "a second one that goes back further loses them",
-)
 def test_a_later_reading_that_goes_further_back_loses_none():
     """The newer one late, then the older one later still."""
     assert handed_over("01ab2") == handed_over("01ba2")

@@ -87,8 +87,13 @@ class Aligner:
             time, dt, dtheta, dvel.
         """
         self.blocks.append((time, rows))
-        while len(self.blocks) > 1 and self.blocks[0][0] < time - 2.0 * self.window - 2.0:
+        while self.blocks[0][0] < time - self._memory:
             self.blocks.popleft()
+
+    @property
+    def _memory(self) -> float:
+        """Seconds of samples that are looked at, whatever the blocks they came in."""
+        return 2.0 * self.window + 2.0
 
     def hear(self, reading: Reading, now: float) -> Start | None:
         """Take in a reading; a start, once there is one.
@@ -151,7 +156,8 @@ class Aligner:
 
     def _rows(self, start: float, end: float) -> Array:
         rows = np.concatenate([block for _, block in self.blocks]) if self.blocks else np.zeros((0, 8))
-        return np.asarray(rows[(rows[:, 0] > start) & (rows[:, 0] <= end)])
+        oldest = self.blocks[-1][0] - self._memory if self.blocks else 0.0
+        return np.asarray(rows[(rows[:, 0] > max(start, oldest)) & (rows[:, 0] <= end)])
 
     def _start(self, time: float, v_n: Array, sd: float, now: float) -> Start:
         assert self.fix is not None

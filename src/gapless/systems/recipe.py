@@ -36,7 +36,7 @@ class Imu(Struct, forbid_unknown_fields=True, frozen=True):
     vibration: NonNegative = 0.25
     accel_noise: Positive = 0.02
     gyro_walk: NonNegative = 0.0003
-    accel_walk: NonNegative = 0.0006
+    accel_walk: NonNegative = 0.0012
     turn: NonNegative = 0.0012
     gyro_bias_sd: Positive = 0.3
     accel_bias_sd: Positive = 0.4
@@ -65,7 +65,7 @@ class GnssUse(Struct, forbid_unknown_fields=True, frozen=True):
     position_floor: NonNegative = 0.02
     velocity_floor: NonNegative = 0.1
     position_correlation: NonNegative = 0.25
-    velocity_correlation: NonNegative = 1.2
+    velocity_correlation: NonNegative = 0.6
     velocity_averaging: NonNegative = 0.0
     jitter: NonNegative = 0.02
     lever_arm: tuple[float, float, float] | None = None
