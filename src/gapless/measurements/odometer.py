@@ -22,12 +22,15 @@ class Odometer:
         Standard deviation of a reading [m/s].
     correlation : float
         Correlation time of its error [s].
+    jitter : float
+        Standard deviation of its time stamps [s]; an odometer's clock may drift by some tenths.
     mounting : tuple of 2 float
         Pitch and yaw of the car's forward axis in the box, where they are not states [rad].
     """
 
-    sd: float = 0.15
+    sd: float = 0.2
     correlation: float = 0.5
+    jitter: float = 0.2
     mounting: tuple[float, float] = (0.0, 0.0)
 
     def observe(self, belief: Belief, reading: Reading) -> Observation:
@@ -40,6 +43,8 @@ class Odometer:
                 layout.offsets,
                 layout.n,
                 np.asarray(self.mounting),
+                belief.memory,
+                self.jitter,
                 float(reading.value[0]),
                 sd,
             )

@@ -11,8 +11,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from gapless import earth
 from gapless._numba import inline, kernel
 from gapless.attitude import matrix_rows
+from gapless.inertial.propagate import PREV_DT, PREV_VEL
 from gapless.recording import Array
 
 MOUNTING, AXLE, SCALE = 4, 5, 6
@@ -152,7 +154,14 @@ def slip(
 
 @kernel
 def odometer(
-    x: Array, offsets: NDArray[np.int64], n: int, mounting: Array, speed: float, sd: float
+    x: Array,
+    offsets: NDArray[np.int64],
+    n: int,
+    mounting: Array,
+    memory: Array,
+    jitter: float,
+    speed: float,
+    sd: float,
 ) -> tuple[Array, Array, Array]:
     """Wheel speed with a scale error: z = reading (1 + s) - forward speed.
 
@@ -160,6 +169,10 @@ def odometer(
     ----------
     x, offsets, n, mounting
         As for `slip`.
+    memory : ndarray
+        What the last sample left behind: specific force.
+    jitter : float
+        Standard deviation of the time stamp [s]: while the car accelerates, late is wrong.
     speed, sd : float
         Reading and its standard deviation [m/s].
 
@@ -179,5 +192,10 @@ def odometer(
         h[0, m + 1] = np.cos(theta) * _dot(e[1], v_b)
     if k >= 0:
         h[0, k] = -speed
-    r[0, 0] = sd * sd
+    accel = 0.0
+    if memory[PREV_DT] > 0.0:
+        g = earth.gravity(np.sin(x[0]), x[2])
+        for i in range(3):
+            accel += e[0, i] * (memory[PREV_VEL + i] / memory[PREV_DT] + g * c[2, i])
+    r[0, 0] = sd * sd + (accel * jitter) ** 2
     return z, h, r

@@ -185,15 +185,13 @@ def lever_arm(system: System, recording: Recording) -> Array:
 
 
 def _sensors(system: System, recording: Recording, angles: Array) -> dict[str, Sensor]:
-    lever, use = lever_arm(system, recording), system.gnss
+    lever, use, wheel = lever_arm(system, recording), system.gnss, system.odometer
     known: dict[str, Sensor] = {
         "position": Position(lever, use.position_correlation, use.position_floor, use.jitter),
         "velocity": Velocity(
             lever, use.velocity_correlation, use.velocity_floor, use.jitter, use.velocity_averaging
         ),
-        "odometer": Odometer(
-            system.odometer.sd, system.odometer.correlation, (float(angles[0]), float(angles[1]))
-        ),
+        "odometer": Odometer(wheel.sd, wheel.correlation, wheel.jitter, (float(angles[0]), float(angles[1]))),
     }
     return {
         name: known[name] for name in system.sensors if name != "odometer" or recording.odometer is not None

@@ -97,6 +97,8 @@ class _FirstPass:
         self.span = 0.0
         self.learned = False
         self.density = gyro_density(past.imu)
+        # an odometer's clock may drift: its offset is the mean over all there is
+        self.enough = ENOUGH if past.odometer is None else np.inf
 
     def run(self) -> None:
         """Up to four passes; each starts from the offsets of the one before."""
@@ -109,13 +111,15 @@ class _FirstPass:
 
     def _navigate(self, jitter: float) -> Navigator:
         gnss = replace(self.system.gnss, jitter=jitter)
-        system = replace(self.system, gnss=gnss, filter=replace(self.system.filter, tick=0.2))
+        sensors = tuple(s for s in self.system.sensors if s != "odometer")  # it would vouch for itself
+        coarse = replace(self.system.filter, tick=0.2)
+        system = replace(self.system, gnss=gnss, filter=coarse, sensors=sensors)
         navigator = Navigator(
             settings(system, self.past, self.offsets, _given_mounting(system), self.density)
         )
         for event in events(self.past, stamps(system, self.offsets), thin=0.45):
             navigator.step(event)
-            if navigator.aligned and navigator.time > navigator.journal.alignments[0][0] + ENOUGH:
+            if navigator.aligned and navigator.time > navigator.journal.alignments[0][0] + self.enough:
                 break
         return navigator
 

@@ -95,8 +95,9 @@ class ZeroVelocity(Struct, forbid_unknown_fields=True, frozen=True):
 class OdometerUse(Struct, forbid_unknown_fields=True, frozen=True):
     """Wheel speed and its scale error."""
 
-    sd: Positive = 0.15
+    sd: Positive = 0.2
     correlation: NonNegative = 0.5
+    jitter: NonNegative = 0.2
     scale_sd: NonNegative = 0.03
 
 
