@@ -148,8 +148,9 @@ def lines(drives: list[Drive]) -> Iterator[str]:
     if len(ends):
         value = nees(ends, np.concatenate([d.outage_covariance for d in drives]))
         inside = float(np.mean(value < chi_square_quantile(0.95, 2)))
-        yield f"ellipse: {100.0 * inside:.1f} % of {len(ends)} outages of {LENGTH:g} s end in their 95 % ellipse"
-        yield f"  mean {value.mean():.2f} of 2, horizontal error RMS {np.sqrt(np.mean(np.sum(ends**2, 1))):.1f} m"
+        far = float(np.sqrt(np.mean(np.sum(ends**2, axis=1))))
+        yield f"{len(ends)} outages of {LENGTH:g} s, {100.0 * inside:.1f} % of them end in their 95 % ellipse;"
+        yield f"  NEES {value.mean():.2f} of 2, horizontal error at the end {far:.1f} m RMS"
 
 
 def main() -> None:
@@ -161,13 +162,8 @@ def main() -> None:
     parser.add_argument("--constraints", action="store_true")
     chosen = parser.parse_args()
     duration = FIRST + LENGTH * OUTAGES + 15.0
-    one = partial(
-        drive,
-        grade=chosen.grade,
-        duration=duration,
-        recipe=system(chosen.grade, chosen.constraints),
-        outages=True,
-    )
+    recipe = system(chosen.grade, chosen.constraints)
+    one = partial(drive, grade=chosen.grade, duration=duration, recipe=recipe, outages=True)
     with ProcessPoolExecutor(2) as pool:
         drives = list(pool.map(one, range(chosen.first, chosen.first + chosen.drives)))
     print("\n".join(lines(drives)))
