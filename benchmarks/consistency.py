@@ -149,7 +149,7 @@ def lines(drives: list[Drive]) -> Iterator[str]:
         value = nees(ends, np.concatenate([d.outage_covariance for d in drives]))
         inside = float(np.mean(value < chi_square_quantile(0.95, 2)))
         far = float(np.sqrt(np.mean(np.sum(ends**2, axis=1))))
-        yield f"{len(ends)} outages of {LENGTH:g} s, {100.0 * inside:.1f} % of them end in their 95 % ellipse;"
+        yield f"{len(ends)} outages of {LENGTH:g} s, {100.0 * inside:.1f} % end in their 95 % ellipse;"
         yield f"  NEES {value.mean():.2f} of 2, horizontal error at the end {far:.1f} m RMS"
 
 
