@@ -107,13 +107,20 @@ class Motion(NamedTuple):
         End of the tick [s].
     dt : float
         Its length [s].
-    rate : ndarray, shape (3,)
-        Mean body rate [rad/s].
-    force : ndarray, shape (3,)
-        Mean specific force [m/s^2].
+    felt : ndarray, shape (6,)
+        Mean body rate [rad/s], then mean specific force [m/s^2].
     """
 
     time: float
     dt: float
-    rate: Array
-    force: Array
+    felt: Array
+
+    @property
+    def rate(self) -> Array:
+        """Mean body rate [rad/s]."""
+        return self.felt[:3]
+
+    @property
+    def force(self) -> Array:
+        """Mean specific force [m/s^2]."""
+        return self.felt[3:]

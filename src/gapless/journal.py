@@ -10,7 +10,7 @@ import numpy as np
 
 from gapless import attitude
 from gapless.inertial.belief import Belief
-from gapless.inertial.layout import Layout
+from gapless.inertial.layout import ROW, Layout
 from gapless.recording import Array, Trajectory
 from gapless.solution import Innovations
 
@@ -38,6 +38,8 @@ class Journal:
 
     def __init__(self, layout: Layout) -> None:
         self.layout = layout
+        cross = [(0, 1), (6, 7), (6, 8), (7, 8)]
+        self._kept = np.array([i * ROW + j for i, j in [*((i, i) for i in range(layout.n)), *cross]])
         self.last = -math.inf
         self.times: list[float] = []
         self.states: list[Array] = []
@@ -61,11 +63,9 @@ class Journal:
         if time <= self.last:
             return
         self.last = time
-        p = belief.P
         self.times.append(time)
         self.states.append(belief.estimate().copy())
-        cross = (p[0, 1], p[6, 7], p[6, 8], p[7, 8])
-        self.variances.append(np.concatenate([p.diagonal(), cross]))
+        self.variances.append(belief.p[self._kept])
         self.sources.append(source)
 
     def innovation(self, channel: str, time: float, z: Array, s: Array, nis: float, factor: float) -> None:

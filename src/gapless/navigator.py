@@ -244,7 +244,7 @@ class Navigator:
     def _tick(self) -> None:
         state, m = self._state, self._state.belief.memory
         dt = float(m[at.TICK_DT])
-        motion = Motion(state.clock, dt, m[at.TICK_W : at.TICK_W + 3] / dt, m[at.TICK_F : at.TICK_F + 3] / dt)
+        motion = Motion(state.clock, dt, m[at.TICK_W :] / dt)
         m[at.TICK_DT :] = 0.0
         for name, constraint in state.constraints.items():
             observation = constraint.tick(state.belief, motion)
@@ -303,15 +303,20 @@ class Navigator:
         state, n = self._state, self.settings.layout.n
         b = state.belief
         z = o.z
-        nis, s = assess(b.p, ROW, n, z, o.H, o.R)
+        nis, s, hp = assess(b.p, ROW, n, z, o.H, o.R)
         verdict = state.gate.judge(channel, time, z, nis, o.R)
         self.journal.innovation(channel, time, z, s, nis, verdict.factor)
         if verdict.widen:
             b.widen(o.H, z)
         if math.isinf(verdict.factor):
             return False
-        r = o.R if verdict.factor == 1.0 else o.R * verdict.factor
-        dx = correct(b.p, ROW, n, z, o.H, r, 1.0)
+        r = o.R
+        if verdict.widen:
+            _, s, hp = assess(b.p, ROW, n, z, o.H, r)
+        elif verdict.factor != 1.0:
+            r = o.R * verdict.factor
+            s = s + (r - o.R)
+        dx = correct(b.p, ROW, n, z, o.H, r, s, hp, 1.0)
         if b.error.size:
             b.error[:n] += dx
         else:

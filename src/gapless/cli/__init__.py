@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import sys
 from typing import Any
 
@@ -85,10 +86,15 @@ for _verb in (inspect, fuse, simulate, convert):
 
 
 def main() -> None:
-    """Run the process `gapless`.
+    """Run the process `gapless`, sparing it what only a longer life would need.
 
     numba imports scipy.linalg wherever it finds it, 0.13 s, for matrix products that no kernel of
-    ours uses. Nothing else in this process wants it, so it is not found.
+    ours uses; nothing else in this process wants it, so it is not found. A run leaves no cycles worth
+    collecting, neither on its way nor at its end: 0.25 s of two.
     """
     sys.modules.setdefault("scipy", None)  # type: ignore[arg-type]
-    gapless(prog_name="gapless")
+    gc.disable()
+    try:
+        gapless(prog_name="gapless")
+    finally:
+        gc.freeze()

@@ -39,27 +39,24 @@ def cholesky(s: Array) -> Array:
 
 
 @inline
-def _predicted(p: Array, row: int, n: int, h: Array, r: Array) -> tuple[Array, Array]:
-    """P H' and S = H P H' + R."""
-    m = h.shape[0]
-    pht = np.zeros((n, m))
-    for i in range(n):
-        for k in range(n):
-            a = p[i * row + k]
-            for j in range(m):
-                pht[i, j] += a * h[j, k]
-    s = r.copy()
+def _solve(low: Array, b: Any) -> None:
+    """B = S^-1 b in place, S = L L'."""
+    m = low.shape[0]
     for i in range(m):
-        for k in range(n):
-            a = h[i, k]
-            if a != 0.0:
-                for j in range(m):
-                    s[i, j] += a * pht[k, j]
-    return pht, s
+        a = b[i]
+        for k in range(i):
+            a -= low[i, k] * b[k]
+        b[i] = a / low[i, i]
+    for r in range(m):
+        i = m - 1 - r
+        a = b[i]
+        for k in range(i + 1, m):
+            a -= low[k, i] * b[k]
+        b[i] = a / low[i, i]
 
 
 @kernel
-def assess(p: Array, row: int, n: int, z: Array, h: Array, r: Array) -> tuple[float, Array]:
+def assess(p: Array, row: int, n: int, z: Array, h: Array, r: Array) -> tuple[float, Array, Array]:
     """How surprising an observation is.
 
     Parameters
@@ -79,22 +76,35 @@ def assess(p: Array, row: int, n: int, z: Array, h: Array, r: Array) -> tuple[fl
         z' S^-1 z.
     s : ndarray, shape (m, m)
         S = H P H' + R.
+    hp : ndarray, shape (m, n)
+        H P.
     """
-    _, s = _predicted(p, row, n, h, r)
-    low = cholesky(s)
+    m = h.shape[0]
+    hp, s = np.zeros((m, n)), r.copy()
+    for q in range(m):
+        for c in range(n):
+            a = h[q, c]
+            if a != 0.0:
+                for j in range(n):
+                    hp[q, j] += a * p[c * row + j]
+    for q in range(m):
+        for c in range(n):
+            a = h[q, c]
+            if a != 0.0:
+                for i in range(m):
+                    s[i, q] += hp[i, c] * a
+    y = z.copy()
+    _solve(cholesky(s), y)
     nis = 0.0
-    y = np.empty_like(z)
-    for i in range(z.size):
-        a = z[i]
-        for k in range(i):
-            a -= low[i, k] * y[k]
-        y[i] = a / low[i, i]
-        nis += y[i] * y[i]
-    return nis, s
+    for i in range(m):
+        nis += z[i] * y[i]
+    return nis, s, hp
 
 
 @kernel
-def correct(p: Array, row: int, n: int, z: Array, h: Array, r: Array, gain: float) -> Array:
+def correct(
+    p: Array, row: int, n: int, z: Array, h: Array, r: Array, s: Array, hp: Array, gain: float
+) -> Array:
     """Estimate of the error from one observation, and P after it.
 
     Parameters
@@ -107,6 +117,11 @@ def correct(p: Array, row: int, n: int, z: Array, h: Array, r: Array, gain: floa
     z : ndarray, shape (m,)
     h : ndarray, shape (m, n)
     r : ndarray, shape (m, m)
+        As it counts, after any adaptation.
+    s : ndarray, shape (m, m)
+        H P H' + that R.
+    hp : ndarray, shape (m, n)
+        H P.
     gain : float
         Factor on the optimal gain (1, but for fading filters).
 
@@ -116,51 +131,34 @@ def correct(p: Array, row: int, n: int, z: Array, h: Array, r: Array, gain: floa
         dx = K z.
     """
     m = h.shape[0]
-    pht, s = _predicted(p, row, n, h, r)
-    low = cholesky(s)
-    k = np.empty((n, m))
-    for i in range(n):
-        for j in range(m):
-            a = pht[i, j]
-            for q in range(j):
-                a -= k[i, q] * low[j, q]
-            k[i, j] = a / low[j, j]
-        for jj in range(m):
-            j = m - 1 - jj
-            a = k[i, j]
-            for q in range(j + 1, m):
-                a -= k[i, q] * low[q, j]
-            k[i, j] = a / low[j, j]
-    dx = np.zeros(n)
-    for i in range(n):
-        for j in range(m):
-            k[i, j] *= gain
-            dx[i] += k[i, j] * z[j]
-    _joseph(p, row, n, h, r, k, pht)
-    return dx
-
-
-@inline
-def _joseph(p: Any, row: Any, n: Any, h: Any, r: Any, k: Any, pht: Any) -> None:
-    """P = (I - K H) P (I - K H)' + K R K', as T = P - K (H P), then T - (T H') K' + K R K'."""
-    m = h.shape[0]
-    for i in range(n):
-        for j in range(n):
-            for q in range(m):
-                p[i * row + j] -= k[i, q] * pht[j, q]
-    tht = np.zeros((n, m))
-    for i in range(n):
-        for c in range(n):
-            a = p[i * row + c]
-            for q in range(m):
-                tht[i, q] += a * h[q, c]
+    low, k, dx = cholesky(s), hp.copy(), np.zeros(n)
+    for j in range(n):
+        _solve(low, k[:, j])
         for q in range(m):
-            for c in range(m):
-                tht[i, q] -= k[i, c] * r[c, q]
+            k[q, j] *= gain
+            dx[j] += k[q, j] * z[q]
     for i in range(n):
-        for j in range(i + 1):
+        for q in range(m):
+            a = k[q, i]
+            for j in range(n):
+                p[i * row + j] -= a * hp[q, j]
+    # p is (I - K H) P now; the rest of the Joseph form is - (p H' - K R) K'
+    for i in range(n):
+        for q in range(m):
+            a = 0.0
+            for c in range(n):
+                a += p[i * row + c] * h[q, c]
+            for c in range(m):
+                a -= k[c, i] * r[c, q]
+            hp[q, i] = a
+    for i in range(n):
+        for q in range(m):
+            a = hp[q, i]
+            for j in range(n):
+                p[i * row + j] -= a * k[q, j]
+    for i in range(n):
+        for j in range(i):
             a = 0.5 * (p[i * row + j] + p[j * row + i])
-            for q in range(m):
-                a -= 0.5 * (tht[i, q] * k[j, q] + tht[j, q] * k[i, q])
             p[i * row + j] = a
             p[j * row + i] = a
+    return dx

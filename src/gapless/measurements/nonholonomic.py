@@ -11,7 +11,7 @@ import numpy as np
 from gapless.events import Motion, Reading
 from gapless.inertial.belief import Belief
 from gapless.measurements.base import Observation
-from gapless.measurements.vehicle import forward_speed, slip
+from gapless.measurements.vehicle import slip
 
 
 @dataclass
@@ -47,25 +47,22 @@ class NonHolonomic:
         """Observation of lateral and vertical slip; see `Constraint.tick`."""
         if motion.time - self.last < self.interval - 1e-3:
             return None
-        layout, x = belief.layout, belief.estimate()
-        angles = np.asarray(self.mounting)
-        speed = forward_speed(x, layout.offsets, angles)
-        if speed < self.min_speed:
-            return None
-        self.last = motion.time
-        soft = speed / (speed + 1.0)
-        z, h, r = slip(
-            x,
+        layout = belief.layout
+        speed, *observation = slip(
+            belief.estimate(),
             layout.offsets,
             layout.n,
-            angles,
+            np.asarray(self.mounting),
             self.axle,
-            motion.rate,
-            math.hypot(self.lateral * math.sqrt(soft), 0.05),
+            motion.felt,
+            self.lateral,
             self.vertical,
             self.turn,
         )
-        return Observation(z, h, r)
+        if speed < self.min_speed:
+            return None
+        self.last = motion.time
+        return Observation(*observation)
 
     def hear(self, reading: Reading) -> None:
         """Nothing to learn."""

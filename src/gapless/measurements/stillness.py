@@ -10,7 +10,8 @@ it and when all of it has lasted. A drive without a labelled stop gets no zero-v
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field, fields
+from copy import copy
+from dataclasses import dataclass, field
 from typing import Any, Self
 
 import numpy as np
@@ -227,14 +228,13 @@ class Stillness:
 
     def tick(self, belief: Belief, motion: Motion) -> Observation | None:
         """Zero-velocity observation where the vehicle stands; see `Constraint.tick`."""
-        felt = np.concatenate([motion.rate, motion.force])
-        self.ring[self.filled % SLOTS] = felt
+        self.ring[self.filled % SLOTS] = motion.felt
         self.filled += 1
         if self.filled < SLOTS:
             return None
         x, share = belief.estimate(), min(1.0, motion.dt / 0.4)
         still = stands(
-            x, belief.p, ROW, felt, share, self.ring, self.spread, self.smooth,
+            x, belief.p, ROW, motion.felt, share, self.ring, self.spread, self.smooth,
             self.mean, self.var, self.odds, self.limits,
         )  # fmt: skip
         self.lasted = self.lasted + motion.dt if still and self._known(motion.time) else 0.0
@@ -251,8 +251,7 @@ class Stillness:
 
     def copy(self) -> Self:
         """An independent copy; see `Constraint.copy`."""
-        new = object.__new__(type(self))
-        for f in fields(self):
-            value = getattr(self, f.name)
-            setattr(new, f.name, value.copy() if isinstance(value, np.ndarray) else value)
+        new = copy(self)
+        for name in ("ring", "count", "mean", "var", "smooth", "spread"):
+            setattr(new, name, getattr(self, name).copy())
         return new

@@ -17,6 +17,8 @@ from gapless.attitude import matrix_rows
 from gapless.inertial.propagate import PREV_DT, PREV_VEL
 from gapless.recording import Array
 
+LEAST = 0.05
+"""What is left of the lateral standard deviation at a crawl [m/s]."""
 MOUNTING, AXLE, SCALE = 4, 5, 6
 """Where `Layout.offsets` keeps the three blocks."""
 
@@ -67,27 +69,6 @@ def _dot(a: Any, b: Any) -> Any:
 
 
 @kernel
-def forward_speed(x: Array, offsets: NDArray[np.int64], mounting: Array) -> float:
-    """Speed along the car's forward axis [m/s].
-
-    Parameters
-    ----------
-    x : ndarray
-        Nominal state.
-    offsets : ndarray of int
-        `Layout.offsets`.
-    mounting : ndarray, shape (2,)
-        Pitch and yaw [rad] where they are not states.
-
-    Returns
-    -------
-    float
-    """
-    _, e, v_b, _, _ = _geometry(x, offsets, mounting, 0.0)
-    return float(_dot(e[0], v_b))
-
-
-@kernel
 def slip(
     x: Array,
     offsets: NDArray[np.int64],
@@ -98,7 +79,7 @@ def slip(
     lateral: float,
     vertical: float,
     turn: float,
-) -> tuple[Array, Array, Array]:
+) -> tuple[float, Array, Array, Array]:
     """No slip at the axle: sideways and vertical velocity of the car are zero.
 
     Parameters
@@ -112,12 +93,15 @@ def slip(
     rate : ndarray, shape (3,)
         Corrected body rate [rad/s].
     lateral, vertical : float
-        Standard deviations on a straight [m/s].
+        Standard deviations on a straight [m/s]; the lateral one shrinks below walking pace, where
+        a car cannot slip by more than it moves.
     turn : float
         Further lateral standard deviation per lateral acceleration [s]; a third of it vertically.
 
     Returns
     -------
+    forward : float
+        Speed along the car's forward axis [m/s].
     z : ndarray, shape (2,)
         Right, down [m/s].
     H : ndarray, shape (2, n)
@@ -147,9 +131,9 @@ def slip(
     if a >= 0:
         h[0, a], h[1, a] = yaw_rate, -pitch_rate
     swing = turn * yaw_rate * forward
-    r[0, 0] = lateral * lateral + swing * swing
+    r[0, 0] = lateral * lateral * abs(forward) / (abs(forward) + 1.0) + LEAST * LEAST + swing * swing
     r[1, 1] = vertical * vertical + swing * swing / 9.0
-    return z, h, r
+    return forward, z, h, r
 
 
 @kernel
