@@ -1,3 +1,4 @@
+import os
 import re
 import subprocess
 import sys
@@ -55,15 +56,15 @@ def test_version(shell):
     assert shell("--version").output == f"gapless {__version__}\n"
 
 
-def test_the_process_does_without_scipy():
+def test_the_process_does_without_scipy(tmp_path):
     """numba would import scipy.linalg, 0.13 s, for nothing that we use."""
     script = (
         "import sys; from gapless.cli import main\n"
         "try: main()\nexcept SystemExit as end: assert end.code == 2\n"
         "assert 'numba' in sys.modules\nassert sys.modules['scipy'] is None"
     )
-    done = subprocess.run(
-        [sys.executable, "-c", script, "inspect", "nowhere"], capture_output=True, text=True
-    )
+    words = [sys.executable, "-c", script, "inspect", "nowhere"]
+    quiet = os.environ | {"NUMBA_CACHE_DIR": str(tmp_path)}  # nothing is said of compiling
+    done = subprocess.run(words, capture_output=True, text=True, env=quiet)
     assert done.returncode == 0, done.stderr
     assert done.stderr == "gapless: nowhere: no such file or folder; check the path\n"
