@@ -64,7 +64,7 @@ class Navigator:
     @property
     def aligned(self) -> bool:
         """Whether there is an attitude yet."""
-        return self._state.aligner is None
+        return self._state.aligned
 
     def step(self, event: Event) -> None:
         """Take in one event.
@@ -159,7 +159,8 @@ class Navigator:
             start = state.aligner.hear(reading, state.clock)
             if start is not None:
                 self._begin(start)
-            return
+            if start is not None or not state.aligned:
+                return
         observation = self.settings.sensors[reading.channel].observe(state.belief, reading)
         if self._update(reading.channel, reading.time, observation):
             state.heard[reading.channel] = reading.time
@@ -216,8 +217,9 @@ class Navigator:
         s, state = self.settings, self._state
         if state.aligner is not None:
             rows = np.column_stack([block.time, block.dt, block.dtheta, block.dvel])[first:last]
+            state.aligner.feel(float(block.time[last - 1]), rows)
+        if not state.aligned:
             state.clock = float(block.time[last - 1])
-            state.aligner.feel(state.clock, rows)
             return
         b = state.belief
         while first < last:
@@ -231,14 +233,17 @@ class Navigator:
                 self._tick()
 
     def _gap(self, begin: float) -> None:
-        """The IMU was silent: nothing is known of the motion; what is constant is kept."""
+        """The IMU was silent: little is known of the motion; what is constant is kept.
+
+        Navigation goes on in doubt of its heading, without the constraints that need one, until a
+        course is heard.
+        """
         state = self._state
-        if math.isfinite(state.clock):
-            while state.pending and state.pending[0].time <= begin:
-                state.pending.pop(0)
-            state.belief.memory[:] = 0.0
-            state.belief.memory[at.TIME] = begin
-            state.aligner = self.settings.aligner.copy()
+        while state.pending and state.pending[0].time <= begin:
+            state.pending.pop(0)
+        state.aligner = self.settings.aligner.copy()
+        if state.aligned:
+            state.belief.lose_track(begin, begin - state.clock)
         state.clock = begin
 
     def _tick(self) -> None:
@@ -248,7 +253,9 @@ class Navigator:
         m[at.TICK_DT :] = 0.0
         for name, constraint in state.constraints.items():
             observation = constraint.tick(state.belief, motion)
-            if observation is not None and self._update(name, motion.time, observation):
+            if observation is None or (state.aligner is not None and constraint.needs_heading):
+                continue
+            if self._update(name, motion.time, observation):
                 state.heard[name] = motion.time
         if state.clock >= state.next_row - EPS:
             state.next_row = max(state.next_row + self.settings.row, state.clock + 0.5 * self.settings.row)

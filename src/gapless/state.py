@@ -23,7 +23,7 @@ class State:
     gate : Gate
     constraints : dict of str to Constraint
     aligner : Aligner or None
-        None once there is an attitude.
+        None once there is a heading that is trusted.
     pending : list of Reading
         Readings that hold for a time still to come, in its order.
     heard : dict of str to float

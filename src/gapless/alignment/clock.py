@@ -91,7 +91,7 @@ def offset(
     """
     shifts = np.arange(-span, span + 0.5 * STEP, STEP)
     inside = (time > curve.time[0] + span) & (time < curve.time[-1] - span)
-    time, value = time[inside], value[inside]
+    time, value = without_spikes(time[inside], value[inside])
     misfits, counts = [], []
     for rows in _windows(time, curve.time, window, span):
         misfits.append(_misfit(curve, time[rows], value[rows], shifts, degree))
@@ -100,6 +100,30 @@ def offset(
         return Offset(0.0, np.inf, 1.0, 0)
     share = min(1.0, float(np.median(np.diff(time))) / correlation)
     return _best(shifts, np.array(misfits), np.array(counts, float), share)
+
+
+def without_spikes(time: Array, value: Array) -> tuple[Array, Array]:
+    """Readings without those that stand far off their neighbours.
+
+    Parameters
+    ----------
+    time : ndarray, shape (k,)
+    value : ndarray, shape (k, d)
+
+    Returns
+    -------
+    time, value : ndarray
+        Without readings more than ten deviations (median absolute, and at least ten units) off
+        the median of five.
+    """
+    if len(time) < 5:
+        return time, value
+    padded = np.pad(value, ((2, 2), (0, 0)), mode="edge")
+    near = np.median(np.stack([padded[i : i + len(value)] for i in range(5)]), axis=0)
+    off = np.abs(value - near)
+    limit = np.maximum(10.0 * 1.4826 * np.median(off, axis=0), 10.0)
+    sound = (off <= limit).all(axis=1)
+    return time[sound], value[sound]
 
 
 def _windows(time: Array, clock: Array, window: float, span: float) -> list[NDArray[np.int64]]:

@@ -13,6 +13,7 @@ from gapless.inertial import propagate as at
 from gapless.inertial.layout import ROW, Layout
 from gapless.inertial.trail import Trail
 from gapless.recording import Array
+from gapless.units import DEG
 
 CORE_STATES: Final = 15
 
@@ -156,6 +157,26 @@ class Belief:
         p[:, s] = 0.0
         index = np.arange(s.start, s.stop)
         p[index, index] = np.square(sd)
+
+    def lose_track(self, time: float, silence: float) -> None:
+        """Carry on after a silence of the IMU: a car's speed, braking and turning bound what happened.
+
+        Parameters
+        ----------
+        time : float
+            When samples come again [s].
+        silence : float
+            How long there were none [s].
+        """
+        r_m, r_n = earth.radii(np.sin(self.x[0]))
+        self.x[0] += self.x[3] * silence / r_m
+        self.x[1] += self.x[4] * silence / (r_n * np.cos(self.x[0]))
+        self.memory[:] = 0.0
+        self.memory[at.TIME] = time
+        self.set_sd("position", np.array([10.0, 10.0, 1.0]) * silence)
+        self.set_sd("velocity", np.array([1.0, 1.0, 0.1]) * min(3.0 * silence, 15.0))
+        self.set_sd("attitude", np.array([3.0, 3.0, min(15.0 * silence, 100.0)]) * DEG)
+        self.trail = Trail(self.trail.length)
 
     def estimate(self) -> Array:
         """The best state: nominal, with the open-loop error applied to a copy of it.

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple, Protocol, Self
+from typing import ClassVar, NamedTuple, Protocol, Self
 
 from gapless.events import Motion, Reading
 from gapless.inertial.belief import Belief
@@ -44,7 +44,15 @@ class Sensor(Protocol):
 
 
 class Constraint(Protocol):
-    """Observes without a reading: what the vehicle cannot do."""
+    """Observes without a reading: what the vehicle cannot do.
+
+    Attributes
+    ----------
+    needs_heading : bool
+        Whether it misleads a filter that may be wrong about its heading by a quarter turn.
+    """
+
+    needs_heading: ClassVar[bool]
 
     def tick(self, belief: Belief, motion: Motion) -> Observation | None:
         """Observation at the end of a tick, or None where the constraint does not hold.

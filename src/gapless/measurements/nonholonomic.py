@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Self
+from typing import ClassVar, Self
 
 import numpy as np
 
@@ -42,6 +42,7 @@ class NonHolonomic:
     mounting: tuple[float, float] = (0.0, 0.0)
     interval: float = 0.1
     last: float = -math.inf
+    needs_heading: ClassVar[bool] = True
 
     def tick(self, belief: Belief, motion: Motion) -> Observation | None:
         """Observation of lateral and vertical slip; see `Constraint.tick`."""

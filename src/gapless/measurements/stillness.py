@@ -12,7 +12,7 @@ from __future__ import annotations
 import math
 from copy import copy
 from dataclasses import dataclass, field
-from typing import Any, Self
+from typing import Any, ClassVar, Self
 
 import numpy as np
 
@@ -187,6 +187,7 @@ class Stillness:
     velocity_heard: bool = False
     lasted: float = 0.0
     last: float = -math.inf
+    needs_heading: ClassVar[bool] = False
 
     def hear(self, reading: Reading) -> None:
         """File the present spread under the class that the GNSS speed names."""

@@ -22,8 +22,14 @@ from gapless.units import DEG
 CHANNELS = ("position", "velocity", "odometer")
 ENOUGH = 600.0
 """Seconds of navigation after which a first pass learns little more."""
-JITTER = (0.3, 0.1, 0.05, 0.05)
+JITTER = (0.3, 0.1, 0.05, 0.05, 0.05, 0.05)
 """How far stamps are trusted from pass to pass [s]: a clock still unknown must not bend the path."""
+
+
+SETTLED = 0.008
+"""Passes end when no offset moves by more [s]; each goes about two thirds of what is left."""
+VAGUE = 0.1
+"""An offset is not believed where its standard deviation is larger [s]."""
 
 
 class Mounting(NamedTuple):
@@ -101,12 +107,12 @@ class _FirstPass:
         self.enough = ENOUGH if past.odometer is None else np.inf
 
     def run(self) -> None:
-        """Up to four passes; each starts from the offsets of the one before."""
+        """Up to six passes; each starts from the offsets of the one before."""
         for jitter in JITTER:
             navigator = self._navigate(jitter)
             if len(navigator.journal.times) < 300:
                 return
-            if self._learn(navigator) < 0.02:
+            if self._learn(navigator) < SETTLED:
                 return
 
     def _navigate(self, jitter: float) -> Navigator:
@@ -130,8 +136,7 @@ class _FirstPass:
         before = dict(self.offsets)
         for channel, estimate in self._estimates(path, blocks).items():
             self.found[channel] = estimate
-            settled = abs(estimate.value) > 2.0 * estimate.sd
-            self.offsets[channel] = estimate.value if settled else 0.0
+            self.offsets[channel] = estimate.value if estimate.sd < VAGUE else 0.0
         return float(max(abs(self.offsets[c] - before[c]) for c in CHANNELS))
 
     def _estimates(self, path: Trajectory, blocks: dict[str, Array]) -> dict[str, Offset]:
@@ -181,8 +186,8 @@ class _FirstPass:
             f"{found.epochs} readings against the inertial motion of {self.span:.0f} s; "
             f"misfit {100.0 * (1.0 - 1.0 / found.gain):.1f} % less than without"
         )
-        if value == 0.0:
-            evidence = f"found {found.value:+.3f} s, within two standard deviations of none; " + evidence
+        if found.sd >= VAGUE:
+            evidence = f"found {found.value:+.3f} s, too vague to act on; " + evidence
         return Decision(name, round(value, 4), "s", "data", evidence, found.sd)
 
     def mounting_decisions(self) -> list[Decision]:
