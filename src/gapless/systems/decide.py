@@ -26,6 +26,8 @@ JITTER = (0.3, 0.1, 0.05, 0.05, 0.05, 0.05)
 """How far stamps are trusted from pass to pass [s]: a clock still unknown must not bend the path."""
 
 
+LOOSE = 30.0
+"""Standard deviation of positions in a first pass that has velocities [m]."""
 SETTLED = 0.008
 """Passes end when no offset moves by more [s]; each goes about two thirds of what is left."""
 VAGUE = 0.1
@@ -116,7 +118,10 @@ class _FirstPass:
                 return
 
     def _navigate(self, jitter: float) -> Navigator:
-        gnss = replace(self.system.gnss, jitter=jitter)
+        use = self.system.gnss
+        # positions at a wrong time would bend the path that is to time them; velocities hold it
+        floor = LOOSE if self.past.gnss.has_velocity else use.position_floor
+        gnss = replace(use, jitter=jitter, position_floor=max(floor, use.position_floor))
         sensors = tuple(s for s in self.system.sensors if s != "odometer")  # it would vouch for itself
         coarse = replace(self.system.filter, tick=0.2)
         system = replace(self.system, gnss=gnss, filter=coarse, sensors=sensors)
