@@ -59,12 +59,15 @@ class Decided:
     gyro_density : float
         Of the log's vibration [rad/sqrt(s)].
     decisions : tuple of Decision
+    span : float
+        Seconds that the first pass could navigate; 0 where the past held too little.
     """
 
     offsets: dict[str, float]
     mounting: Mounting
     gyro_density: float
     decisions: tuple[Decision, ...]
+    span: float
 
 
 def decide(recording: Recording, system: System, horizon: float = np.inf) -> Decided:
@@ -90,7 +93,7 @@ def decide(recording: Recording, system: System, horizon: float = np.inf) -> Dec
         *passes.clock_decisions(),
         *passes.mounting_decisions(),
     )
-    return Decided(passes.offsets, passes.mounting, passes.density, decisions)
+    return Decided(passes.offsets, passes.mounting, passes.density, decisions, passes.span)
 
 
 class _FirstPass:

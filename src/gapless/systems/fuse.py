@@ -60,14 +60,27 @@ def fuse(
     system = System() if system is None else system
     outages = tuple(outages)
     open_sky = withhold_from(recording, outages)
-    first = recording.start + min((o.start for o in outages), default=np.inf)
     if causal:
         navigator, decided = _on_the_way(open_sky, system, rate, progress)
     else:
-        decided = decide(open_sky, system, first)
+        decided = _decide_before(open_sky, system, outages)
         navigator = Navigator(_settings(open_sky, system, decided, rate))
         _fold(navigator, events(open_sky, stamps(system, decided.offsets)), recording.start, progress)
     return _collect(recording, system, outages, navigator, decided)
+
+
+def _decide_before(open_sky: Recording, system: System, outages: tuple[Outage, ...]) -> Decided:
+    """Decide from what was logged before the first outage that interrupts navigation.
+
+    An outage before there was half a minute of it (a car still parked) leaves nothing to decide from
+    and nothing to bridge: the next one counts.
+    """
+    horizons = [open_sky.start + start for start in sorted(o.start for o in outages)] or [np.inf]
+    for horizon in horizons:
+        decided = decide(open_sky, system, horizon)
+        if decided.span > 0.0:
+            break
+    return decided
 
 
 def _settings(
