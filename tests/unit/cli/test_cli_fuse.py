@@ -46,7 +46,8 @@ def test_first_row_is_at_the_end_of_alignment(run):
     summary = json.loads((run[0] / "summary.json").read_text("utf-8"))
     (aligned,) = (d["value"] for d in summary["decisions"] if d["name"] == "alignment")
     first = pq.read_table(run[0] / "solution.parquet")["time"][0].as_py() - summary["start"]
-    assert 0.0 <= first - aligned <= 0.11  # the first row comes within one tick of 0.1 s
+    # a tick of 0.1 s and the sample of 10 ms that it ends on; the decision is rounded to 10 ms
+    assert 0.0 <= first - aligned < 0.12
 
 
 def test_summary_tells_decisions_and_scores(run):
