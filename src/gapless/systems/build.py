@@ -21,6 +21,10 @@ from gapless.systems.recipe import Imu, System
 from gapless.units import DEG
 
 
+TURN = 5.0
+"""How long a turn lasts [s]."""
+
+
 def settings(
     system: System,
     recording: Recording,
@@ -145,7 +149,8 @@ def budget(imu: Imu, gyro_density: float = 0.0) -> dict[str, Array]:
         # what moves in run is a random walk with the same power over the correlation time
         gyro = math.hypot(g.gyro_walk, g.gyro_instability * math.sqrt(2.0 / g.gyro_instability_tau))
         accel = math.hypot(g.accel_walk, g.accel_instability * math.sqrt(2.0 / g.accel_instability_tau))
-        turn = math.hypot(g.gyro_scale_sd, g.misalignment_sd) * 0.1
+        # a gyro askew turns with every turn; over one of some five seconds that looks like noise
+        turn = g.misalignment_sd * math.sqrt(TURN)
         noise = [g.gyro_noise, g.accel_noise, gyro, accel, turn]
         bias = (
             math.hypot(g.gyro_bias_sd, g.gyro_instability),
