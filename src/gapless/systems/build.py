@@ -20,7 +20,6 @@ from gapless.sensors import grade
 from gapless.systems.recipe import Imu, System
 from gapless.units import DEG
 
-
 TURN = 5.0
 """How long a turn lasts [s]."""
 
