@@ -37,21 +37,6 @@ CLOCKS = {
 
 CHANNELS = ("position", "velocity")
 
-CONVERGING = pytest.mark.xfail(
-    strict=False,
-    reason="decide: a pass whose offset is wrong bends its path towards it, each goes 60 to 70 % of the way "
-    "and they end below 0.02 s a pass; -0.23 for -0.15 s (beijing-a), 0.02 to 0.04 s short (colorado)",
-)
-SNAPPED = pytest.mark.xfail(
-    strict=False, reason="decide: an offset within two deviations of none is taken as none, -0.023 s here"
-)
-SPIKED = pytest.mark.xfail(
-    strict=False, reason="clock.offset is plain least squares: a spike in every window hides the offset"
-)
-PARKING = pytest.mark.xfail(
-    strict=False, reason="Navigator._gap: aligned anew only at 5 m/s, and the car parks after its two holes"
-)
-
 pytestmark = pytest.mark.skipif(
     not all((DATA / name).is_dir() for name in NAMES),
     reason=f"real recordings are not in {DATA}; set GAPLESS_RECORDINGS to their folder",
@@ -83,7 +68,7 @@ def test_fuses_without_being_told_anything(name):
     log = recording(name)
     # to the last hole of the log, from the third fix in a row at speed on
     fast = np.flatnonzero(np.hypot(*log.gnss.v_n[:, :2].T) > 5.0)
-    assert t.time[0] < log.gnss.time[fast[0]] + 30.0
+    assert t.time[0] < log.gnss.time[fast[0]] + 60.0
     holes = log.imu.time[1:][np.diff(log.imu.time) > 10.0]
     assert t.time[-1] > min([log.imu.time[-1], *(holes - 20.0)]) - 1.0
     assert all(np.isfinite(column).all() for column in (t.lla, t.v_n, t.euler, t.sd))
@@ -93,7 +78,7 @@ def test_fuses_without_being_told_anything(name):
     assert np.nanmedian(apart.horizontal) < 3.0
 
 
-@pytest.mark.parametrize("name", [pytest.param("beijing-a", marks=CONVERGING), *NAMES[1:]])
+@pytest.mark.parametrize("name", NAMES)
 def test_clock_offsets_are_those_of_the_answer_sheet(name):
     found = [clock(solution(name).decisions, channel) for channel in CHANNELS]
     print(name, found, CLOCKS[name])
@@ -106,14 +91,7 @@ def test_odometer_offset():
 
 
 @pytest.mark.parametrize("shift", [-0.3, 0.3])
-@pytest.mark.parametrize(
-    "name",
-    [
-        "beijing-a",
-        pytest.param("colorado", marks=CONVERGING),
-        pytest.param("kingston", marks=SNAPPED),
-    ],
-)
+@pytest.mark.parametrize("name", ["beijing-a", "colorado", "kingston"])
 def test_shifted_stamps_move_the_offset_by_as_much(name, shift):
     log = recording(name)
     moved = replace(log, gnss=replace(log.gnss, time=log.gnss.time + shift))
@@ -172,16 +150,13 @@ def test_nothing_goes_astray_through_holes_in_the_log(name):
     assert not np.any(apart > 15.0)
 
 
-@PARKING
 @pytest.mark.parametrize("name", ["beijing-e1", "beijing-e2"])
 def test_navigation_goes_on_after_holes_in_the_log(name):
     rows, _ = rows_after_the_holes(name)
     assert rows.sum() > 600
 
 
-@pytest.mark.parametrize(
-    "name", [pytest.param("beijing-a", marks=SPIKED), pytest.param("colorado", marks=SPIKED), "kingston"]
-)
+@pytest.mark.parametrize("name", ["beijing-a", "colorado", "kingston"])
 def test_injected_spikes_do_no_harm(name):
     """One epoch in fifty jumps by 20 to 500 m and 10 to 400 m/s, its stated deviations as they were."""
     log = recording(name)
