@@ -14,6 +14,9 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any, TypeVar, cast
 
+import numba
+from numba.extending import register_jitable
+
 F = TypeVar("F", bound=Callable[..., Any])
 
 _PACKAGE = Path(__file__).parent
@@ -30,12 +33,10 @@ def _cache_dir() -> Path:
 
 
 if "NUMBA_CACHE_DIR" not in os.environ:
-    os.environ["NUMBA_CACHE_DIR"] = str(_cache_dir())
-    if not os.path.isdir(os.environ["NUMBA_CACHE_DIR"]):
+    _place = _cache_dir()
+    vars(numba.config)["CACHE_DIR"] = str(_place)
+    if not _place.is_dir():
         print("gapless: compiling kernels, once per version (about ten seconds)", file=sys.stderr)
-
-import numba  # noqa: E402 (reads the variable when it is imported)
-from numba.extending import register_jitable  # noqa: E402
 
 
 def kernel(function: F) -> F:

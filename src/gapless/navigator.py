@@ -221,16 +221,25 @@ class Navigator:
         if not state.aligned:
             state.clock = float(block.time[last - 1])
             return
-        b = state.belief
+        b, often = state.belief, s.row < s.tick
         while first < last:
+            end = self._next_row(block, first, last) if often else last
+            flush = due and end == last
             first = at.propagate(
                 b.x, b.memory, s.layout.width, b.p, b.scratch, b.error, s.layout.offsets, s.noise,
-                block.time, block.dt, block.dtheta, block.dvel, first, last, s.period, s.tick, due,
+                block.time, block.dt, block.dtheta, block.dvel, first, end, s.period, s.tick, flush,
             )  # fmt: skip
             state.clock = float(block.time[first - 1])
             b.trail.mark(state.clock, b.v_n)
             if b.memory[at.TICK_DT] >= s.tick - at.ROUND:
                 self._tick()
+            elif often:
+                self._row()
+
+    def _next_row(self, block: ImuBlock, first: int, last: int) -> int:
+        """Sample after which a row is due, where rows come more often than ticks."""
+        rows = block.time[first:last]
+        return min(last, first + int(np.searchsorted(rows, self._state.next_row - EPS)) + 1)
 
     def _gap(self, begin: float) -> None:
         """The IMU was silent: little is known of the motion; what is constant is kept.
@@ -257,8 +266,13 @@ class Navigator:
                 continue
             if self._update(name, motion.time, observation):
                 state.heard[name] = motion.time
+        self._row()
+
+    def _row(self) -> None:
+        """Write a row where one is due; it changes nothing of the belief."""
+        state, row = self._state, self.settings.row
         if state.clock >= state.next_row - EPS:
-            state.next_row = max(state.next_row + self.settings.row, state.clock + 0.5 * self.settings.row)
+            state.next_row = max(state.next_row + row, state.clock + 0.5 * row)
             self.journal.row(state.clock, state.belief, self._source())
 
     def _source(self) -> str:

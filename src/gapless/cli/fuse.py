@@ -84,12 +84,9 @@ def _navigate(work: Job, rate: float) -> tuple[Solution, Scores | None]:
     from gapless.errors import ConfigError
     from gapless.systems.fuse import fuse
 
-    tick = work.system.filter.tick
-    if rate * tick > 1.0 + 1e-9:
-        raise ConfigError(
-            f"--rate {rate:g}: rows come every {tick:g} s at most, so {1.0 / tick:g} Hz; lower the rate or "
-            "filter.tick in the configuration"
-        )
+    most = work.recording.imu.rate
+    if rate > most * 1.01:
+        raise ConfigError(f"--rate {rate:g}: the IMU has {most:.4g} samples a second; ask for no more")
     with progress("fusing", work.recording.duration) as tell:
         solution = fuse(work.recording, work.system, work.outages, rate, work.causal, tell)
     if work.recording.reference is None and not work.outages:

@@ -169,6 +169,8 @@ def parse(text: str, where: str) -> System:
     except msgspec.ValidationError as error:
         raise ConfigError(f"{where}: {_explain(str(error))}") from None
     unknown = [name for name in system.filter.states if name not in EXTRAS]
+    if len(set(system.filter.states)) < len(system.filter.states):
+        raise ConfigError(f"{where}: filter.states names a block twice; name each once")
     if unknown:
         raise ConfigError(f"{where}: filter.states has {unknown[0]!r}; choose from {', '.join(EXTRAS)}")
     return system
