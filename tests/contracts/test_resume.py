@@ -10,7 +10,7 @@ from folding import CLOCKS, OUTAGE, belief, fold, heard, prepared, recording, ro
 from gapless.events import ImuBlock
 from gapless.feed import events
 from gapless.navigator import Navigator
-from gapless.systems.recipe import Filter, System
+from gapless.systems.recipe import Filter, GnssUse, System
 
 
 def stops(feed, times):
@@ -81,6 +81,19 @@ def test_samples_one_by_one_are_the_block(clock):
     whole, live = run(setup, log, clock), fold(Navigator(setup), singles(feed))
     assert rows(live) == rows(whole)
     assert heard(live) == heard(whole)
+    assert belief(live) == belief(whole)
+
+
+@pytest.mark.xfail(
+    strict=True,
+    reason="Navigator._run: Trail.mark at every stop of the kernel, so at every block's end; "
+    "marks at ticks and at readings only would be the same for all blocks",
+)
+def test_samples_one_by_one_are_the_block_for_velocities_that_are_means():
+    log = recording("exact", 1.0).slice(-np.inf, 60.0)
+    setup = prepared(log, "exact", System(gnss=GnssUse(velocity_averaging=1.0)))
+    feed = list(events(log, CLOCKS["exact"]))
+    whole, live = run(setup, log, "exact"), fold(Navigator(setup), singles(feed))
     assert belief(live) == belief(whole)
 
 
