@@ -302,22 +302,12 @@ class Navigator:
         b.set_sd("position", 2.0 * start.sd_position + 1.0)
         b.set_sd("velocity", start.sd_velocity + 0.5)
         b.set_sd("attitude", np.array([1.0, 1.0, 0.0]) * s.initial_sd["attitude"])
-        self._heading_sd(start)
+        b.course_heading(start.sd_heading)
         b.memory[:] = 0.0
         b.memory[at.TIME] = state.clock
         state.aligner, state.aligned = None, True
         state.next_row = max(state.next_row, state.clock)
         self.journal.align(state.clock, start.evidence)
-
-    def _heading_sd(self, start: Start) -> None:
-        """The box's heading is the course less the mounting yaw, and shares its error."""
-        b = self._state.belief
-        p = b.p.reshape(ROW, ROW)
-        p[8, 8] = start.sd_heading**2
-        if "mounting" in b.layout:
-            yaw = b.layout.blocks["mounting"].start + 1
-            p[8, 8] += p[yaw, yaw]
-            p[8, yaw] = p[yaw, 8] = -p[yaw, yaw]
 
     def _update(self, channel: str, time: float, o: Observation) -> bool:
         """Gate, adapt, correct; False where the observation was rejected."""

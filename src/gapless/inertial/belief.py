@@ -158,6 +158,21 @@ class Belief:
         index = np.arange(s.start, s.stop)
         p[index, index] = np.square(sd)
 
+    def course_heading(self, sd: float) -> None:
+        """Take the heading to come from a course: the course less the mounting yaw, sharing its error.
+
+        Parameters
+        ----------
+        sd : float
+            One standard deviation of the course [rad].
+        """
+        p = self.p.reshape(ROW, ROW)
+        p[8, 8] = sd * sd
+        if "mounting" in self.layout:
+            yaw = self.layout.blocks["mounting"].start + 1
+            p[8, 8] += p[yaw, yaw]
+            p[8, yaw] = p[yaw, 8] = -p[yaw, yaw]
+
     def lose_track(self, time: float, silence: float) -> None:
         """Carry on after a silence of the IMU: a car's speed, braking and turning bound what happened.
 
