@@ -26,6 +26,7 @@ from gapless.feed import events
 from gapless.navigator import Navigator
 from gapless.recording import Recording
 from gapless.sensors import Grade
+from gapless.sensors import grade as named_grade
 from gapless.simulate import Receiver, simulate
 from gapless.systems.build import settings
 from gapless.systems.recipe import Clock, Mounting, System, load
@@ -104,9 +105,12 @@ def drive(seed: int, grade: str | Grade, duration: float, recipe: System, outage
     log = simulate("urban", grade, duration, seed, receiver=RECEIVER)
     navigator = Navigator(settings(recipe, log, {}, (np.zeros(2), np.radians([1.0, 1.0]))))
     errors, covariances, ends = [], [], []
+    askew = named_grade(grade).misalignment_sd if isinstance(grade, str) else grade.misalignment_sd
     for now in epochs(navigator, log):
         errors.append(error(navigator, log))
-        covariances.append(navigator.belief.P[:9, :9].copy())
+        # the filter's attitude is that of the sensitive axes, the truth's that of the box
+        box = np.diag(np.repeat([0.0, askew**2], [6, 3]))
+        covariances.append(navigator.belief.P[:9, :9] + box)
         if outages and now >= FIRST and (now - FIRST) % LENGTH == 0.0 and len(ends) < OUTAGES:
             ends.append(outage(navigator, log, now))
     result = Drive(np.array(errors), np.array(covariances))

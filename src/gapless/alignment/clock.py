@@ -62,7 +62,7 @@ def offset(
     value: Array,
     degree: int,
     span: float = 1.5,
-    window: float = 20.0,
+    windows: tuple[float, ...] = (20.0,),
     correlation: float = 1.0,
 ) -> Offset:
     """Shift in time at which readings fit a curve.
@@ -79,8 +79,8 @@ def offset(
         Of the polynomial in time that each window may drift by: 1 for velocity, 2 for a path.
     span : float
         Largest offset looked for [s].
-    window : float
-        Length of a window [s].
+    windows : tuple of float
+        Lengths of the windows [s]; each length goes over all readings.
     correlation : float
         Correlation time of the readings' errors [s], for the standard deviation.
 
@@ -93,12 +93,12 @@ def offset(
     inside = (time > curve.time[0] + span) & (time < curve.time[-1] - span)
     time, value = without_spikes(time[inside], value[inside])
     misfits, counts = [], []
-    for rows in _windows(time, curve.time, window, span):
+    for rows in (r for window in windows for r in _windows(time, curve.time, window, span)):
         misfits.append(_misfit(curve, time[rows], value[rows], shifts, degree))
         counts.append(len(rows))
     if not misfits:
         return Offset(0.0, np.inf, 1.0, 0)
-    share = min(1.0, float(np.median(np.diff(time))) / correlation)
+    share = min(1.0, float(np.median(np.diff(time))) / correlation) / len(windows)
     return _best(shifts, np.array(misfits), np.array(counts, float), share)
 
 

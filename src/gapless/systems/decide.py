@@ -26,6 +26,8 @@ JITTER = (0.3, 0.1, 0.05, 0.05, 0.05, 0.05)
 """How far stamps are trusted from pass to pass [s]: a clock still unknown must not bend the path."""
 
 
+WINDOWS = (100.0, 200.0)
+"""Windows in which a path is compared with positions [s]: long, for positions lag in their changes."""
 LOOSE = 30.0
 """Standard deviation of positions in a first pass that has velocities [m]."""
 SETTLED = 0.008
@@ -157,9 +159,9 @@ class _FirstPass:
             found["velocity"] = offset(curve, gnss.time[heard], gnss.v_n[heard, :2], 1)
         if "position" not in self.given and fixed.any():
             here = earth.lla_to_ned(gnss.lla[fixed], gnss.lla[fixed][0])[:, :2]
-            window = min(100.0, self.span)
+            windows = tuple(sorted({min(w, self.span) for w in WINDOWS}))
             found["position"] = offset(
-                path_curve(path), gnss.time[fixed], here, 1, window=window, correlation=5.0
+                path_curve(path), gnss.time[fixed], here, 1, windows=windows, correlation=5.0
             )
         if odometer is not None and "odometer" not in self.given:
             speed = np.hypot(path.v_n[:, 0], path.v_n[:, 1])[:, None]

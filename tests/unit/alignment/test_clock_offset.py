@@ -59,7 +59,7 @@ def test_standing_still_says_nothing():
 
 def test_an_offset_beyond_the_span_is_not_claimed():
     time, value = readings(3.0)
-    assert offset(CURVE, time, value, 1, span=0.8, window=10.0).sd == np.inf
+    assert offset(CURVE, time, value, 1, span=0.8, windows=(10.0,)).sd == np.inf
 
 
 def test_nothing_at_all():
