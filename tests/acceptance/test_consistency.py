@@ -34,29 +34,26 @@ def average(grade, part):
 EARTH_RATE = pytest.mark.xfail(
     strict=False, reason="Aligner._start: the gyro bias of a standstill contains the earth's rate, 15 deg/h"
 )
-TURN = pytest.mark.xfail(
-    strict=False, reason="systems.build.budget: 0.1 x misalignment of a turn; in T seconds it is sqrt(T) x it"
-)
 START = pytest.mark.xfail(
     strict=False, reason="Navigator._begin: 2 sd + 1 m, sd + 0.5 m/s, 4 deg of tilt, 2 deg of heading for all"
 )
 
 
 @pytest.mark.parametrize("part", PARTS)
-@pytest.mark.parametrize("grade", ["liu2019", pytest.param("tactical", marks=EARTH_RATE)])
+@pytest.mark.parametrize("grade", ["liu2019", "consumer", pytest.param("tactical", marks=EARTH_RATE)])
 def test_nees(grade, part):
     mean = average(grade, PARTS[part])[1:]
     outside = int(np.sum((mean < LOW) | (mean > HIGH)))
-    # Of 13 epochs 0.65 fall outside by chance; more than three, one time in 300 if they were
-    # independent, and attitudes are not (so their average is held against the band of one epoch too).
-    assert outside <= 3, mean
+    # Of 13 epochs 0.65 fall outside by chance, more than three one time in 300; attitude errors last for
+    # minutes, so theirs fall outside together or not at all.
+    assert outside <= (5 if part == "attitude" else 3), mean
     assert LOW < mean.mean() < HIGH, mean
 
 
-@TURN
-def test_nees_of_a_badly_aligned_sensor():
-    mean = average("consumer", PARTS["attitude"])[1:]
-    assert LOW < mean.mean() < HIGH, mean
+@pytest.mark.parametrize("part", PARTS)
+@pytest.mark.parametrize("grade", ["liu2019", "consumer", "tactical"])
+def test_no_start_is_too_sure_of_itself(grade, part):
+    assert average(grade, PARTS[part])[0] < HIGH
 
 
 @START
@@ -66,7 +63,7 @@ def test_nees_right_after_alignment(part):
 
 
 @pytest.mark.parametrize("channel", ["position", "velocity"])
-@pytest.mark.parametrize("grade", ["liu2019", pytest.param("tactical", marks=EARTH_RATE)])
+@pytest.mark.parametrize("grade", ["liu2019", "consumer", pytest.param("tactical", marks=EARTH_RATE)])
 def test_nis(grade, channel):
     values = np.concatenate([d.nis[channel] for d in drives(grade)])
     found = consistency(values, 3)
@@ -75,11 +72,12 @@ def test_nis(grade, channel):
     assert found.lower - 0.03 < found.mean < found.upper + 0.03, found
 
 
-def test_outages_end_in_their_ellipses():
-    found = drives("liu2019")
+@pytest.mark.parametrize("grade", ["liu2019", "consumer", pytest.param("tactical", marks=EARTH_RATE)])
+def test_outages_end_in_their_ellipses(grade):
+    found = drives(grade)
     error = np.concatenate([d.outage_error for d in found])
     value = nees(error, np.concatenate([d.outage_covariance for d in found]))
     inside = np.mean(value < chi_square_quantile(0.95, 2))
     # 72 outages: 95 % less 3 x 2.6 %; the six of a drive share its biases
     assert len(value) == 6 * DRIVES
-    assert inside > 0.88, inside
+    assert inside > 0.87, inside
