@@ -2,14 +2,16 @@
 
 numba's on-disk cache looks at the file of a kernel, not at the files it imports, so an edit in
 `earth.py` would leave a stale kernel behind. The cache folder therefore carries the hash of every
-source file of the package: change one and all kernels compile again, once.
+source file that a kernel can reach: change one and all kernels compile again, once.
 """
 
 from __future__ import annotations
 
 import hashlib
 import os
+import shutil
 import sys
+import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any, TypeVar, cast
@@ -24,12 +26,28 @@ FAST = {"reassoc", "contract", "arcp", "nsz"}
 """Fast-math flags that keep NaN and infinity alive: a kernel must be able to notice them."""
 
 
+_FILES = ("_numba", "units", "earth", "attitude", "recording", "events")
+_ROOMS = (*(f"{name}.py" for name in _FILES), "filters", "inertial", "sensors", "measurements")
+"""Modules that hold kernels, and all that those may import (the floors keep it so)."""
+_KEPT = 30.0 * 86400.0
+"""Kernels of versions that last compiled longer ago are thrown away [s]."""
+
+
 def _cache_dir() -> Path:
     digest = hashlib.sha256()
-    for path in sorted(_PACKAGE.rglob("*.py")):
-        digest.update(path.read_bytes())
+    for room in _ROOMS:
+        place = _PACKAGE / room
+        for path in [place] if place.suffix else sorted(place.rglob("*.py")):
+            digest.update(path.read_bytes())
     root = os.environ.get("XDG_CACHE_HOME") or os.path.join(os.path.expanduser("~"), ".cache")
     return Path(root) / "gapless" / f"kernels-{digest.hexdigest()[:16]}"
+
+
+def _tidy(root: Path) -> None:
+    """Throw away the kernels of versions long gone."""
+    for old in root.glob("kernels-*"):
+        if time.time() - old.stat().st_mtime > _KEPT:
+            shutil.rmtree(old, ignore_errors=True)
 
 
 if "NUMBA_CACHE_DIR" not in os.environ:
@@ -37,6 +55,7 @@ if "NUMBA_CACHE_DIR" not in os.environ:
     vars(numba.config)["CACHE_DIR"] = str(_place)
     if not _place.is_dir():
         print("gapless: compiling kernels, once per version (about ten seconds)", file=sys.stderr)
+        _tidy(_place.parent)
 
 
 def kernel(function: F) -> F:
