@@ -19,6 +19,10 @@ class AlignmentError(GaplessError):
     """The data never allowed an initial position, velocity or attitude."""
 
 
+class SweepError(GaplessError):
+    """The workers of a sweep cannot go on; what was stored stays."""
+
+
 class MissingExtraError(GaplessError):
     """An optional dependency is not installed.
 

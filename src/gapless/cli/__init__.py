@@ -13,6 +13,7 @@ from gapless.cli.convert import convert
 from gapless.cli.fuse import fuse
 from gapless.cli.inspect import inspect
 from gapless.cli.simulate import simulate
+from gapless.cli.sweep import sweep
 from gapless.errors import GaplessError
 
 REFUSED = 2
@@ -81,7 +82,7 @@ def gapless() -> None:
     """
 
 
-for _verb in (inspect, fuse, simulate, convert):
+for _verb in (inspect, fuse, simulate, convert, sweep):
     gapless.add_command(_verb)
 
 
