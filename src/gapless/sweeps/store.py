@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import hashlib
 import io
+import os
 import time
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
@@ -25,7 +26,7 @@ from gapless.sweeps.places import Place, place
 
 BATCH: Final = 256
 """Most rows of a part."""
-PATIENCE: Final = 2.0
+PATIENCE: Final = 1.0
 """A row that comes later than this [s] after the last part is stored at once, with those that wait."""
 _STUDY: Final = "study="
 _RUN_KEYS: Final = ("key", "recording", "seed", "system", "override", "scenario")
@@ -109,7 +110,7 @@ def opened(folder: str, study: str) -> Iterator[Store]:
 
 
 def read(
-    folder: str,
+    folder: str | os.PathLike[str],
     table: Literal["runs", "outages"] = "runs",
     studies: Sequence[str] = (),
     columns: Sequence[str] = (),
@@ -118,7 +119,7 @@ def read(
 
     Parameters
     ----------
-    folder : str
+    folder : path
         What they were given as `--out`; a URL goes through fsspec.
     table : {"runs", "outages"}
         A row per run, or per outage with the key and the names of its run.
@@ -137,6 +138,7 @@ def read(
     ConfigError
         If there is no such study, or a part is damaged.
     """
+    folder = os.fspath(folder).rstrip("/")
     names = [n.removeprefix(_STUDY) for n in place(folder).folders() if n.startswith(_STUDY)]
     for name in studies:
         if name not in names:
@@ -145,7 +147,7 @@ def read(
     found = []
     for name in studies or names:
         wanted = [*dict.fromkeys(["key", *columns])] if columns and table == "runs" else None
-        for part in _parts(place(f"{folder.rstrip('/')}/{_STUDY}{name}"), wanted):
+        for part in _parts(place(f"{folder}/{_STUDY}{name}"), wanted):
             rows = _outages(part) if table == "outages" else part.drop_columns(_nested(part))
             found.append(rows.add_column(0, "study", pa.repeat(pa.scalar(name), len(rows))))
     if not found:

@@ -20,6 +20,8 @@ from gapless.errors import ConfigError, MissingExtraError, SweepError
 
 _THREADS: Final = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
 _DASK: Final = "dask://"
+ANSWER: Final = 10.0
+"""A scheduler must answer within this [s]."""
 
 
 @dataclass(frozen=True)
@@ -148,7 +150,7 @@ def _cluster(text: str) -> Crew:
     except ImportError as error:
         raise MissingExtraError("distributed", "cluster") from error
     try:
-        client = distributed.Client(f"tcp://{text.removeprefix(_DASK)}", timeout=10, set_as_default=False)
+        client = distributed.Client(f"tcp://{text.removeprefix(_DASK)}", timeout=ANSWER, set_as_default=False)
     except (OSError, ValueError) as error:
         raise ConfigError(f"{text}: no dask scheduler answers ({error}); check host and port") from None
     threads = sum(client.nthreads().values())
