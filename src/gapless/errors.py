@@ -20,7 +20,7 @@ class AlignmentError(GaplessError):
 
 
 class SweepError(GaplessError):
-    """The workers of a sweep cannot go on; what was stored stays."""
+    """The workers of a sweep cannot go on; what is stored stays, and the same sweep goes on from there."""
 
 
 class MissingExtraError(GaplessError):

@@ -30,8 +30,9 @@ SHOWN: Final = 20
     "--jobs", type=click.IntRange(min=1), metavar="N", help="Number of processes; one a core if not given."
 )
 @click.option("--out", metavar="DIR", help="Folder of the results, or a URL such as s3://bucket/results.")
+@click.option("--retry", is_flag=True, help="Do failed runs again; refused ones stay as they are.")
 @click.option("--dry-run", is_flag=True, help="Say what the runs are, and do none.")
-def sweep(study: Path, executor: str, jobs: int | None, out: str | None, dry_run: bool) -> None:
+def sweep(study: Path, executor: str, jobs: int | None, out: str | None, retry: bool, dry_run: bool) -> None:
     """Do all runs of a STUDY, a TOML file that docs/sweeps.md explains.
 
     DIR receives one Parquet row a run, with its outages, in study=NAME. Rows that
@@ -54,10 +55,10 @@ def sweep(study: Path, executor: str, jobs: int | None, out: str | None, dry_run
     gc.enable()  # `main` does without, for runs that end before it pays
     told: list[Tally] = []
     try:
-        tally = conduct(plan, out, executor, jobs, _teller(told))
+        tally = conduct(plan, out, executor, jobs, retry, _teller(told))
     except KeyboardInterrupt:
         _interrupted(told, len(plan), out)
-    click.echo("\n".join(_result_lines(plan, tally, out)))
+    click.echo("\n".join(_result_lines(plan, tally, out)).replace("\u00a0", " "))
 
 
 def _interrupted(told: list[Tally], total: int, out: str) -> None:
@@ -80,7 +81,7 @@ def _teller(told: list[Tally]) -> Tell:
         told[:] = [tally]
         if time.monotonic() - shown[0] > pause:
             shown[0] = time.monotonic()
-            click.echo(start + _progress(tally), err=True, nl=not watched)
+            click.echo(start + _progress(tally).replace("\u00a0", " "), err=True, nl=not watched)
 
     return tell
 
@@ -128,12 +129,15 @@ def _result_lines(plan: Plan, tally: Tally, out: str) -> Iterator[str]:
     lines = summary(read(out, studies=[plan.name], columns=COLUMNS), {run.key for run in plan})
     names = [" ".join(filter(None, (line.system, line.override))) for line in lines]
     width = max(map(len, [*names, "system"]))
-    yield f"\n  {'system':<{width}}{'runs':>7}{'refused':>9}{'failed':>8}{'outages':>9}" + "".join(
-        f"{word:>9}" for word in ("median", "P95", "worst", "in 95 %")
-    )
+    heads = ("runs", "refused", "failed", "outages", "median", "P95", "worst", "in 95 %")
+    yield f"\n  {'system':<{width}}" + _cells(*heads)
     for name, line in zip(names, lines, strict=True):
-        counts = f"{line.runs:>7}{line.refused:>9}{line.failed:>8}{line.outages:>9}"
-        figures = [*(number(x, "m") for x in (line.median, line.p95, line.worst)), percent(line.coverage)]
-        yield f"  {name:<{width}}{counts}" + "".join(f"{x:>9}" for x in figures)
-    yield "  Largest horizontal error of an outage: each run's median, P95 and worst, and their medians"
-    yield "  over runs; share of truth inside the stated 95 % ellipses, median over runs."
+        figures = [*(number(x, "m") for x in (line.median, line.p95, line.worst)), percent(line.coverage_95)]
+        counts = map(str, (line.runs, line.refused, line.failed, line.outages))
+        yield f"  {name:<{width}}" + _cells(*counts, *figures)
+    yield "  Largest horizontal error of an outage: median, P95 and worst of a run; share of"
+    yield "  truth inside the stated 95 % ellipses. Of each the median over runs."
+
+
+def _cells(*texts: str) -> str:
+    return "".join(f"{text:>{width}}" for text, width in zip(texts, (6, 8, 7, 8, 9, 9, 9, 9), strict=True))

@@ -69,6 +69,7 @@ def sweep(
     out: str | PathLike[str],
     executor: str | Executor = "processes",
     jobs: int | None = None,
+    retry: bool = False,
     tell: Tell | None = None,
 ) -> Tally:
     """Do the runs of a study that its store does not hold yet.
@@ -84,6 +85,8 @@ def sweep(
         "processes", "dask://HOST:PORT", or an executor of your own.
     jobs : int, optional
         Number of processes; one a core if not given.
+    retry : bool
+        Do failed runs again, instead of leaving their rows as they are.
     tell : callable, optional
         Told how far it is after each row.
 
@@ -103,6 +106,8 @@ def sweep(
     plan = study if isinstance(study, Plan) else plan_study(study)
     workers = hired(executor) if isinstance(executor, Executor) else crew(executor, jobs)
     with opened(str(out), plan.name) as store:
+        if retry:
+            store.forget_failed()
         return _swept(plan, workers, store.keys(), store.add, tell)
 
 

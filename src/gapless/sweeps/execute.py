@@ -8,7 +8,7 @@ from typing import Any, Final, Literal, get_type_hints
 
 import msgspec
 
-from gapless.errors import AlignmentError, ConfigError, GaplessError
+from gapless.errors import AlignmentError, ConfigError, GaplessError, SweepError
 from gapless.evaluation import OutageScore, Scores, score
 from gapless.recording import Recording
 from gapless.scenarios import plan
@@ -59,7 +59,7 @@ class Row:
         Number of outages, and of those that a label sets apart.
     horizontal_max_median, horizontal_max_rms, horizontal_max_p95, horizontal_max_worst : float
         Spread of the largest horizontal error of an outage [m].
-    coverage : float
+    coverage_95 : float
         Share of truth epochs in these outages that the stated 95 % ellipses hold.
     rmse_open : float
         Horizontal RMSE outside outages [m].
@@ -89,7 +89,7 @@ class Row:
     horizontal_max_rms: float = NAN
     horizontal_max_p95: float = NAN
     horizontal_max_worst: float = NAN
-    coverage: float = NAN
+    coverage_95: float = NAN
     rmse_open: float = NAN
     coverage_open_95: float = NAN
     each: tuple[dict[str, Any], ...] = ()
@@ -111,12 +111,16 @@ def execute(run: Run) -> Row:
     ------
     ConfigError
         If the run was planned with other versions than those here: its result would be another's.
+    SweepError, OSError
+        If its recording is not to be had here: that says nothing about the run.
     """
     if run.versions != versions():
         here, there = (", ".join(f"{k} {v}" for k, v in of.items()) for of in (versions(), run.versions))
         raise ConfigError(f"the study was planned with {there}, this worker has {here}; install the same")
     try:
         log = recording(run.source, run.seed)
+    except (SweepError, OSError):
+        raise
     except GaplessError as error:
         return blank(run, "refused", str(error))
     except Exception as error:
@@ -204,7 +208,7 @@ def _scored(run: Run, log: Recording, scores: Scores) -> Row:
         horizontal_max_rms=spread.rms,
         horizontal_max_p95=spread.p95,
         horizontal_max_worst=spread.worst,
-        coverage=scores.coverage,
+        coverage_95=scores.coverage,
         rmse_open=scores.aided.horizontal_rmse,
         coverage_open_95=scores.aided.coverage,
         each=tuple(map(_outage, scores.outages)),

@@ -31,6 +31,9 @@ class Place(Protocol):
     def write(self, name: str, data: bytes) -> None:
         """Put a file there, whole or not at all; one of that name is replaced."""
 
+    def remove(self, name: str) -> None:
+        """Throw a file away."""
+
     def clean(self) -> None:
         """Throw away what was being written when a writer was killed."""
 
@@ -70,6 +73,10 @@ class Local(NamedTuple):
         with atomic(self.folder / name) as temporary:
             temporary.write_bytes(data)
 
+    def remove(self, name: str) -> None:
+        """See `Place`."""
+        (self.folder / name).unlink()
+
     def clean(self) -> None:
         """See `Place`."""
         for path in self.folder.glob(f".*{_TORN}"):
@@ -77,7 +84,7 @@ class Local(NamedTuple):
 
     @contextmanager
     def reserve(self) -> Iterator[None]:
-        """See `Place`; a lock that ends with the process, however that ends.
+        """See `Place`; a lock that ends with the process, however that ends (not on Windows).
 
         Yields
         ------
@@ -88,8 +95,11 @@ class Local(NamedTuple):
         ConfigError
             If another process has it.
         """
-        import fcntl
-
+        try:
+            import fcntl
+        except ImportError:  # Windows; there it is for the user to start one sweep only
+            yield
+            return
         self.folder.mkdir(parents=True, exist_ok=True)
         with (self.folder / _LOCK).open("w") as file:
             try:
@@ -143,11 +153,15 @@ class Remote(NamedTuple):
         self.system.pipe_file(temporary, data)
         self.system.mv(temporary, f"{self.folder}/{name}")
 
+    def remove(self, name: str) -> None:
+        """See `Place`."""
+        self.system.rm_file(f"{self.folder}/{name}")
+
     def clean(self) -> None:
         """See `Place`."""
         for name in self._entries("file", hidden=True):
             if name.endswith(_TORN):
-                self.system.rm_file(f"{self.folder}/{name}")
+                self.remove(name)
 
     @contextmanager
     def reserve(self) -> Iterator[None]:

@@ -10,7 +10,7 @@ from tempfile import TemporaryDirectory
 
 from msgspec import Struct
 
-from gapless.errors import RecordingError
+from gapless.errors import RecordingError, SweepError
 from gapless.io import read
 from gapless.recording import Recording
 from gapless.simulate import simulate
@@ -77,12 +77,16 @@ class Logged(Struct, frozen=True, tag="logged", tag_field="kind"):
         Raises
         ------
         RecordingError
-            If it has changed since the run was planned, or cannot be read.
+            If it cannot be read.
+        SweepError
+            If it is not there, or not what it was when the run was planned: no result of this run.
         """
-        if fingerprint(self.paths) != self.fingerprint:
-            raise RecordingError(
-                f"{self.paths[0]}: not the recording that the study was planned with; start the sweep again"
-            )
+        try:
+            now = fingerprint(self.paths)
+        except RecordingError as error:
+            raise SweepError(f"{error}; a worker must see what the study names") from None
+        if now != self.fingerprint:
+            raise SweepError(f"{self.paths[0]}: has changed since the study was planned; run it again")
         if not any("://" in path for path in self.paths):
             return read(*self.paths)
         with TemporaryDirectory(prefix="gapless-") as folder:

@@ -10,7 +10,7 @@ import hashlib
 import io
 import os
 import time
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import asdict, fields
 from functools import cache
@@ -54,7 +54,16 @@ class Store:
         -------
         set of str
         """
-        return {key for part in _parts(self._where, ["key"]) for key in part["key"].to_pylist()}
+        return {key for _, part in _parts(self._where, ["key"]) for key in part["key"].to_pylist()}
+
+    def forget_failed(self) -> None:
+        """Throw away the rows of runs that failed, so that they are done again."""
+        for name, part in _parts(self._where):
+            kept = part.filter(pc.field("outcome") != "failed")
+            if not len(kept):
+                self._where.remove(name)
+            elif len(kept) < len(part):
+                self._where.write(name, _packed(kept))
 
     def add(self, row: Row) -> None:
         """Take a row; it is stored with the next part.
@@ -72,10 +81,8 @@ class Store:
         if not self._rows:
             return
         table = pa.Table.from_pylist([asdict(row) for row in self._rows], schema())
-        buffer = io.BytesIO()
-        pq.write_table(table, buffer, compression="zstd")
         name = hashlib.sha256("".join(row.key for row in self._rows).encode()).hexdigest()[:16]
-        self._where.write(f"part-{name}.parquet", buffer.getvalue())
+        self._where.write(f"part-{name}.parquet", _packed(table))
         self._rows.clear()
         self._stored = time.monotonic()
 
@@ -147,7 +154,7 @@ def read(
     found = []
     for name in studies or names:
         wanted = [*dict.fromkeys(["key", *columns])] if columns and table == "runs" else None
-        for part in _parts(place(f"{folder}/{_STUDY}{name}"), wanted):
+        for _, part in _parts(place(f"{folder}/{_STUDY}{name}"), wanted):
             rows = _outages(part) if table == "outages" else part.drop_columns(_nested(part))
             found.append(rows.add_column(0, "study", pa.repeat(pa.scalar(name), len(rows))))
     if not found:
@@ -175,6 +182,12 @@ def _arrow(kind: Any) -> Any:
     return known.get(kind, pa.string())
 
 
+def _packed(table: Any) -> bytes:
+    buffer = io.BytesIO()
+    pq.write_table(table, buffer, compression="zstd")
+    return buffer.getvalue()
+
+
 def _nested(part: Any) -> list[str]:
     return [name for name in part.column_names if name == "each"]
 
@@ -189,12 +202,11 @@ def _outages(part: Any) -> Any:
     )
 
 
-def _parts(where: Place, columns: Iterable[str] | None) -> Iterator[Any]:
+def _parts(where: Place, columns: list[str] | None = None) -> Iterator[tuple[str, Any]]:
+    """Name and table of every part."""
     for name in where.names():
         if name.startswith("part-"):
             try:
-                yield pq.read_table(
-                    io.BytesIO(where.read(name)), columns=None if columns is None else list(columns)
-                )
+                yield name, pq.read_table(io.BytesIO(where.read(name)), columns=columns)
             except pa.ArrowInvalid as error:
                 raise ConfigError(f"{name}: damaged ({error}); remove it, its runs are done again") from None

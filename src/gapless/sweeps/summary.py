@@ -10,7 +10,7 @@ from typing import Any, Final
 
 from gapless.evaluation import spread
 
-_FIGURES: Final = ("horizontal_max_median", "horizontal_max_p95", "horizontal_max_worst", "coverage")
+_FIGURES: Final = ("horizontal_max_median", "horizontal_max_p95", "horizontal_max_worst", "coverage_95")
 COLUMNS: Final = ("outcome", "system", "override", "outages", "apart", *_FIGURES)
 """Of the runs, that a summary looks at."""
 
@@ -28,7 +28,7 @@ class Line:
     median, p95, worst : float
         Median over runs of a run's median, 95th percentile and worst of the outages' largest
         horizontal errors [m].
-    coverage : float
+    coverage_95 : float
         Median over runs of the share inside the stated 95 % ellipses.
     """
 
@@ -41,7 +41,7 @@ class Line:
     median: float
     p95: float
     worst: float
-    coverage: float
+    coverage_95: float
 
 
 def summary(runs: Any, keys: Container[str]) -> list[Line]:

@@ -76,8 +76,10 @@ def _begin(lifeline: Connection) -> None:
 
 
 def _end_with(lifeline: Connection) -> None:
-    lifeline.poll(None)
-    os._exit(1)
+    try:
+        lifeline.poll(None)
+    finally:  # Windows raises where others return
+        os._exit(1)
 
 
 def crew(text: str = "processes", jobs: int | None = None) -> Crew:

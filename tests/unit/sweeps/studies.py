@@ -16,16 +16,16 @@ ENVIRONMENT = os.environ | {"PYTHONPATH": os.pathsep.join([SOURCES, *sys.path])}
 """For processes that must find the same gapless, and the modules beside a test."""
 
 
-def run(seed=1, profile="urban", scenario=("85:115",), system="constraints", **rest):
-    """130 s: 30 s at rest, aligned at about 50 s."""
-    return Run(Simulated(profile, "consumer", 130.0), scenario, gp.load_system(system), seed=seed, **rest)
+def run(seed=1, profile="urban", scenario=("65:90",), system="constraints", **rest):
+    """100 s, of which the first 30 at rest; an outage counts from 60 s on."""
+    return Run(Simulated(profile, "consumer", 100.0), scenario, gp.load_system(system), seed=seed, **rest)
 
 
 def study(folder, seeds=20, name="tiny", **keys):
     """A study file of as many runs as there are seeds, times two systems."""
-    lines = [f'name = "{name}"', 'systems = ["ins", "constraints"]', 'scenarios = ["85:115"]']
+    lines = [f'name = "{name}"', 'systems = ["ins", "constraints"]', 'scenarios = ["65:90"]']
     lines += [f"{key} = {value}" for key, value in keys.items()]
-    lines += ["[simulated]", f"seeds = {{ count = {seeds} }}", "duration = 130"]
+    lines += ["[simulated]", f"seeds = {{ count = {seeds} }}", "duration = 100"]
     path = folder / f"{name}.toml"
     path.write_text("\n".join(lines), "utf-8")
     return path

@@ -6,7 +6,7 @@ import pytest
 from studies import run
 
 import gapless as gp
-from gapless.errors import ConfigError
+from gapless.errors import ConfigError, SweepError
 from gapless.evaluation import OutageScore
 from gapless.sweeps.execute import execute, outage_columns
 from gapless.sweeps.run import Run
@@ -22,9 +22,9 @@ def test_same_run_same_bits():
 
 
 def test_figures_are_those_of_the_score():
-    one = run(2, scenario=("80:100", "105:125"), override={"nonholonomic.lateral": 0.5})
+    one = run(2, scenario=("62:75", "80:95"), override={"nonholonomic.lateral": 0.5})
     row = execute(one)
-    drive = gp.simulate_drive("urban", "consumer", 130.0, 2)
+    drive = gp.simulate_drive("urban", "consumer", 100.0, 2)
     solution = gp.fuse(drive, one.recipe, gp.plan(one.scenario, drive.duration))
     scores = gp.score(solution, drive)
     assert one.recipe.nonholonomic.lateral == 0.5
@@ -32,7 +32,7 @@ def test_figures_are_those_of_the_score():
     assert (row.aligned, row.truth, row.outages) == (True, "reference", 2)
     assert row.apart == sum(not o.counts for o in scores.outages)
     assert row.horizontal_max_worst == scores.horizontal.worst
-    assert row.coverage == scores.coverage
+    assert row.coverage_95 == scores.coverage
     assert row.rmse_open == scores.aided.horizontal_rmse
     for told, one_outage in zip(row.each, scores.outages, strict=True):
         assert list(told) == list(outage_columns())
@@ -57,7 +57,7 @@ def test_what_is_refused_is_a_row(what, aligned, words):
     assert (row.outcome, row.aligned, row.outages) == ("refused", aligned, 0)
     assert words in row.reason
     assert "\n" not in row.reason
-    assert row.duration == pytest.approx(129.99)  # the first sample ends the first interval
+    assert row.duration == pytest.approx(99.99)  # the first sample ends the first interval
 
 
 def test_a_log_that_cannot_be_read_is_a_row(tmp_path):
@@ -68,14 +68,17 @@ def test_a_log_that_cannot_be_read_is_a_row(tmp_path):
     assert row.recording == str(tmp_path)
 
 
-def test_a_log_that_has_changed_is_refused(tmp_path):
+def test_a_log_that_has_changed_or_gone_is_no_row_but_an_error(tmp_path):
     gp.write_recording(gp.simulate_drive("urban", duration=60.0), tmp_path)
     one = Run(logged(str(tmp_path)), (), gp.load_system("ins"))
     with (tmp_path / "recording.toml").open("a") as file:
         file.write("# a remark\n")
-    row = execute(one)
-    assert row.outcome == "refused"
-    assert "start the sweep again" in row.reason
+    with pytest.raises(SweepError, match="has changed since"):
+        execute(one)
+    for path in tmp_path.iterdir():
+        path.unlink()
+    with pytest.raises(SweepError, match="a worker must see"):
+        execute(one)
 
 
 def test_a_defect_is_a_row_too(monkeypatch):

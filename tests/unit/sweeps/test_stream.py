@@ -6,6 +6,7 @@ import sys
 from collections.abc import Iterator
 from concurrent.futures import Future, ProcessPoolExecutor, ThreadPoolExecutor
 from contextlib import closing
+from dataclasses import replace
 from functools import partial
 from multiprocessing import get_context
 
@@ -80,6 +81,23 @@ def test_somebodys_own_executor_that_breaks_ends_the_sweep(tmp_path):
         pytest.raises(SweepError, match="lost a worker"),
     ):
         list(completed([run(seed) for seed in range(4)], hired(pool), task))
+
+
+def test_a_run_that_a_cluster_blames_is_a_failed_row():
+    class KilledWorker(Exception):
+        pass
+
+    def task(one):
+        if one.seed == 1:
+            raise KilledWorker("attempted on 4 workers, all of them died")
+        return quick(one)
+
+    with ThreadPoolExecutor(1) as pool:
+        workers = replace(hired(pool), blames=(KilledWorker,))
+        rows = list(completed([run(seed) for seed in range(3)], workers, task))
+    assert [(r.seed, r.outcome) for r in sorted(rows, key=lambda r: r.seed)] == [
+        (0, "done"), (1, "failed"), (2, "done")
+    ]  # fmt: skip
 
 
 def unreachable(one):

@@ -14,7 +14,7 @@ from studies import ENVIRONMENT, rows, stored, study, uninterrupted
 import gapless as gp
 from gapless.errors import ConfigError
 
-RUNS = 24
+RUNS = 16
 """The first part is stored with the first run that ends: long enough to be killed in the middle of."""
 
 
@@ -85,7 +85,7 @@ def test_interrupted_and_resumed(whole, tmp_path):
     assert process.returncode == 130
     (line,) = told.strip().splitlines()
     found = re.fullmatch(
-        r"gapless: interrupted; (\d+) of 24 runs are stored in .*; the same .* from there", line
+        r"gapless: interrupted; (\d+) of 16 runs are stored in .*; the same .* from there", line
     )
     assert found, told
     assert int(found[1]) == len(stored(tmp_path))
@@ -156,7 +156,7 @@ def test_no_cluster_at_that_address(whole, tmp_path, monkeypatch):
 
 def test_equal_runs_are_done_once(tmp_path):
     path = study(
-        tmp_path, seeds=1, runs='[{ simulated = { seeds = [1], duration = 130 }, scenario = "85:115" }]'
+        tmp_path, seeds=1, runs='[{ simulated = { seeds = [1], duration = 100 }, scenario = "65:90" }]'
     )
     tally = uninterrupted(path, tmp_path / "out")
     assert (tally.total, tally.there, tally.done) == (3, 1, 2)
