@@ -135,8 +135,8 @@ def _result_lines(plan: Plan, tally: Tally, out: str) -> Iterator[str]:
         figures = [*(number(x, "m") for x in (line.median, line.p95, line.worst)), percent(line.coverage_95)]
         counts = map(str, (line.runs, line.refused, line.failed, line.outages))
         yield f"  {name:<{width}}" + _cells(*counts, *figures)
-    yield "  Largest horizontal error of an outage: median, P95 and worst of a run; share of"
-    yield "  truth inside the stated 95 % ellipses. Of each the median over runs."
+    yield "  Largest horizontal error of an outage: median, P95 and worst of a run; share"
+    yield "  of truth inside the stated 95 % ellipses. Of each the median over runs."
 
 
 def _cells(*texts: str) -> str:
