@@ -10,6 +10,7 @@ from contextlib import closing
 from dataclasses import dataclass, replace
 from os import PathLike
 
+from gapless.errors import ConfigError
 from gapless.sweeps.execute import Row
 from gapless.sweeps.run import Run
 from gapless.sweeps.store import opened
@@ -104,7 +105,12 @@ def sweep(
         If the workers cannot go on.
     """
     plan = study if isinstance(study, Plan) else plan_study(study)
-    workers = hired(executor) if isinstance(executor, Executor) else crew(executor, jobs)
+    if isinstance(executor, str):
+        workers = crew(executor, jobs)
+    elif jobs is None:
+        workers = hired(executor)
+    else:
+        raise ConfigError("an executor of your own has its own number of workers; leave jobs out")
     with opened(str(out), plan.name) as store:
         if retry:
             store.forget_failed()

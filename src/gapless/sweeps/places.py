@@ -135,7 +135,8 @@ class Remote(NamedTuple):
     def _entries(self, kind: str, hidden: bool = False) -> list[str]:
         self.system.invalidate_cache()
         try:
-            found = self.system.ls(self.folder, detail=True)
+            with self._reached():
+                found = self.system.ls(self.folder, detail=True)
         except FileNotFoundError:
             return []
         paths = (one["name"].strip("/") for one in found if one["type"] == kind)
@@ -144,18 +145,21 @@ class Remote(NamedTuple):
 
     def read(self, name: str) -> bytes:
         """See `Place`."""
-        return bytes(self.system.cat_file(f"{self.folder}/{name}"))
+        with self._reached():
+            return bytes(self.system.cat_file(f"{self.folder}/{name}"))
 
     def write(self, name: str, data: bytes) -> None:
         """See `Place`."""
         temporary = f"{self.folder}/.{name}.{secrets.token_hex(4)}{_TORN}"
-        self.system.makedirs(self.folder, exist_ok=True)
-        self.system.pipe_file(temporary, data)
-        self.system.mv(temporary, f"{self.folder}/{name}")
+        with self._reached():
+            self.system.makedirs(self.folder, exist_ok=True)
+            self.system.pipe_file(temporary, data)
+            self.system.mv(temporary, f"{self.folder}/{name}")
 
     def remove(self, name: str) -> None:
         """See `Place`."""
-        self.system.rm_file(f"{self.folder}/{name}")
+        with self._reached():
+            self.system.rm_file(f"{self.folder}/{name}")
 
     def clean(self) -> None:
         """See `Place`."""
@@ -172,6 +176,16 @@ class Remote(NamedTuple):
         None
         """
         yield
+
+    @contextmanager
+    def _reached(self) -> Iterator[None]:
+        """Whatever a file system's own library raises (no credentials, say) is one kind of error here."""
+        try:
+            yield
+        except OSError:
+            raise
+        except Exception as error:
+            raise OSError(f"{self.folder}: {type(error).__name__}: {error}") from error
 
 
 def place(path: str) -> Place:

@@ -201,6 +201,25 @@ def test_without_fsspec_one_line_says_what_to_install(monkeypatch, tmp_path):
     place(str(tmp_path))
 
 
+def test_a_library_that_the_scheme_needs(monkeypatch):
+    monkeypatch.setitem(sys.modules, "s3fs", None)
+    with pytest.raises(ConfigError, match=r"s3://bucket/results: Install s3fs"):
+        place("s3://bucket/results")
+
+
+def test_what_a_file_system_raises_is_an_error_of_the_system(monkeypatch, tmp_path):
+    class NoCredentialsError(Exception):
+        pass
+
+    def ls(*_, **__):
+        raise NoCredentialsError("Unable to locate credentials")
+
+    where = place(f"memory://{tmp_path}")
+    monkeypatch.setattr(type(where.system), "ls", ls)
+    with pytest.raises(OSError, match="NoCredentialsError: Unable to locate"):
+        where.names()
+
+
 def test_a_scheme_that_nobody_knows():
     with pytest.raises(ConfigError, match=r"nowhere://x: .*nowhere"):
         place("nowhere://x")
