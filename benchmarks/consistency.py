@@ -56,6 +56,7 @@ def system(grade: str, constraints: bool = False) -> System:
     base = load("constraints" if constraints else "ins")
     gnss = replace(
         base.gnss,
+        wander=0.0,
         position_floor=0.0,
         velocity_floor=0.0,
         position_correlation=0.0,

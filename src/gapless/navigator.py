@@ -8,8 +8,10 @@ from typing import Any, Self
 
 import numpy as np
 
+from gapless import earth
 from gapless.alignment.coarse import Start
 from gapless.events import Event, ImuBlock, Motion, Reading
+from gapless.filters.consider import Wander
 from gapless.filters.update import assess, correct
 from gapless.inertial import propagate as at
 from gapless.inertial.belief import Belief, inject
@@ -44,10 +46,11 @@ class Navigator:
 
     def __init__(self, settings: Settings) -> None:
         self.settings = settings
-        self.journal = Journal(settings.layout)
+        self.journal = Journal(settings.layout, settings.misalignment)
         belief = Belief(settings.layout, settings.open_loop, settings.trail)
         constraints = {name: c.copy() for name, c in settings.constraints.items()}
-        self._state = State(belief, settings.gate.copy(), constraints, settings.aligner.copy())
+        wander = Wander(settings.wander_time)
+        self._state = State(belief, settings.gate.copy(), constraints, settings.aligner.copy(), wander)
         self._past = Past(settings.lateness)
         self.dropped = 0
 
@@ -230,8 +233,10 @@ class Navigator:
                 block.time, block.dt, block.dtheta, block.dvel, first, end, s.period, s.tick, flush,
             )  # fmt: skip
             state.clock = float(block.time[first - 1])
-            b.trail.mark(state.clock, b.v_n)
-            if b.memory[at.TICK_DT] >= s.tick - at.ROUND:
+            ticked = b.memory[at.TICK_DT] >= s.tick - at.ROUND
+            if ticked or (due and first == last):  # never at a block's end: blocks change no bits
+                b.trail.mark(state.clock, b.v_n)
+            if ticked:
                 self._tick()
             elif often:
                 self._row()
@@ -273,7 +278,7 @@ class Navigator:
         state, row = self._state, self.settings.row
         if state.clock >= state.next_row - EPS:
             state.next_row = max(state.next_row + row, state.clock + 0.5 * row)
-            self.journal.row(state.clock, state.belief, self._source())
+            self.journal.row(state.clock, state.belief, state.wander.response, self._source())
 
     def _source(self) -> str:
         heard, now = self._state.heard, self._state.clock
@@ -296,9 +301,11 @@ class Navigator:
                 b.block(name)[:] = value
             for name in s.layout.blocks:
                 b.set_sd(name, s.initial_sd.get(name, 0.0))
-            if start.gyro_bias is not None:
+            prior = np.asarray(s.initial_sd["gyro_bias"])
+            # the mean rate of a standstill holds the earth's: no news to a gyro that is known better
+            if start.gyro_bias is not None and float(prior.max()) > 2.0 * earth.RATE:
                 b.block("gyro_bias")[:] = start.gyro_bias
-                b.set_sd("gyro_bias", np.minimum(s.initial_sd["gyro_bias"], 0.1 * DEG))
+                b.set_sd("gyro_bias", np.minimum(prior, 0.1 * DEG))
         b.set_sd("position", 2.0 * start.sd_position + 1.0)
         b.set_sd("velocity", start.sd_velocity + 0.5)
         b.set_sd("attitude", np.array([1.0, 1.0, 0.0]) * s.initial_sd["attitude"])
@@ -328,6 +335,8 @@ class Navigator:
             r = o.R * verdict.factor
             s = s + (r - o.R)
         dx = correct(b.p, ROW, n, z, o.H, r, s, hp, 1.0)
+        if o.slow is not None:
+            state.wander.hear(time, b.P[:3, :3], r, o.slow)
         if b.error.size:
             b.error[:n] += dx
         else:

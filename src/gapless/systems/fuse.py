@@ -15,6 +15,7 @@ from gapless.navigator import Navigator, Settings
 from gapless.recording import Recording
 from gapless.scenarios import Outage, withhold
 from gapless.solution import Decision, Solution
+from gapless.systems.adjust import graded
 from gapless.systems.build import settings, stamps
 from gapless.systems.decide import Decided, decide, static_decisions
 from gapless.systems.recipe import System
@@ -57,7 +58,7 @@ def fuse(
     AlignmentError
         If the vehicle never moved fast enough for a heading.
     """
-    system = System() if system is None else system
+    system = graded(System() if system is None else system, recording)
     outages = tuple(outages)
     open_sky = withhold_from(recording, outages)
     if causal:
