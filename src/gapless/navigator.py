@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from itertools import pairwise
 from typing import Any, Self
 
 import numpy as np
@@ -15,20 +14,15 @@ from gapless.filters.consider import Wander
 from gapless.filters.update import assess, correct
 from gapless.inertial import propagate as at
 from gapless.inertial.belief import Belief, inject
-from gapless.inertial.increments import split
 from gapless.inertial.layout import ROW
 from gapless.journal import Journal
 from gapless.measurements.base import Observation
+from gapless.pieces import EPS, GAP, pieces, without_holes
 from gapless.settings import Settings
 from gapless.state import Past, State
 from gapless.units import DEG
 
 __all__ = ["Navigator", "Settings"]
-
-EPS = 1e-6
-"""Times closer than this are the same instant [s]."""
-GAP = 0.5
-"""A longer silence of the IMU is not bridged: it ends in a new alignment [s]."""
 
 
 class Navigator:
@@ -171,49 +165,17 @@ class Navigator:
     # --- samples --------------------------------------------------------------------------------
 
     def _feel(self, block: ImuBlock) -> None:
-        """Run through samples that may have gaps between them."""
-        begin = block.time - block.dt
-        cuts = [0, *(np.flatnonzero(begin[1:] - block.time[:-1] > GAP) + 1).tolist(), len(begin)]
-        for first, last in pairwise(cuts):
-            if begin[first] - self._state.clock > GAP:
-                self._gap(float(begin[first]))
-            self._through(block if len(cuts) == 2 else block.rows(first, last))
-
-    def _through(self, block: ImuBlock) -> None:
-        """Run through samples without gaps, stopping wherever a reading waits."""
-        pending, start, n = self._state.pending, 0, len(block.time)
-        while start < n:
-            if not pending or pending[0].time > block.time[-1] + EPS:
-                self._run(block, start, n, False)
-                return
-            due = pending[0].time
-            end = int(np.searchsorted(block.time, due + EPS, side="right"))
-            if end > start:
-                self._run(block, start, end, due <= block.time[end - 1] + EPS)
-                self._apply_due()
-                start = end
-            else:
-                self._cut(block.rows(start, start + 1), due)
-                start += 1
-
-    def _cut(self, sample: ImuBlock, due: float) -> None:
-        """One sample, cut where a reading waits inside it."""
-        memory = self._state.belief.memory
-        dt = float(sample.dt[0])
-        part = dt - (float(sample.time[0]) - due)
-        if part <= EPS:  # held for the instant before the sample began
-            self._apply(self._state.pending.pop(0))
-            self._through(sample)
-            return
-        before = float(memory[at.PREV_DT])
-        parts = []
-        for increment, i in ((sample.dtheta[0], at.PREV_THETA), (sample.dvel[0], at.PREV_VEL)):
-            parts.append(split(increment, memory[i : i + 3], before, dt, part))
-        head = ImuBlock(np.array([due]), np.array([part]), parts[0][None], parts[1][None])
-        tail = ImuBlock(sample.time, np.array([dt - part]), sample.dtheta - parts[0], sample.dvel - parts[1])
-        self._run(head, 0, 1, True)
-        self._apply_due()
-        self._through(tail)
+        """Run through samples, stopping at holes between them and wherever a reading waits."""
+        state = self._state
+        for stretch in without_holes(block):
+            begin = float(stretch.time[0] - stretch.dt[0])
+            if begin - state.clock > GAP:
+                self._gap(begin)
+            for piece in pieces(stretch, state.pending, state.belief.memory):
+                if piece.last > piece.first:
+                    self._run(*piece)
+                if piece.due:
+                    self._apply_due()
 
     def _run(self, block: ImuBlock, first: int, last: int, due: bool) -> None:
         """Propagate samples first..last-1, ticking on the way; `due`: an observation waits there."""

@@ -153,8 +153,9 @@ def budget(imu: Imu, gyro_density: float = 0.0) -> dict[str, Array]:
         gyro = math.hypot(g.gyro_walk, g.gyro_instability * math.sqrt(2.0 / g.gyro_instability_tau))
         accel = math.hypot(g.accel_walk, g.accel_instability * math.sqrt(2.0 / g.accel_instability_tau))
         # a gyro askew turns with every turn; over one of some five seconds that looks like noise
-        askew = g.misalignment_sd
-        turn = askew * math.sqrt(TURN)
+        turn = g.misalignment_sd * math.sqrt(TURN)
+        # of six angles between the axes, each pair's half difference turns the whole triad
+        askew = g.misalignment_sd / math.sqrt(2.0)
         noise = [g.gyro_noise, g.accel_noise, gyro, accel, turn]
         bias = (
             math.hypot(g.gyro_bias_sd, g.gyro_instability),
