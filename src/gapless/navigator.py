@@ -9,7 +9,7 @@ import numpy as np
 
 from gapless import earth
 from gapless.alignment.coarse import Start
-from gapless.events import Event, ImuBlock, Motion, Reading
+from gapless.events import EPS, Event, ImuBlock, Motion, Reading
 from gapless.filters.consider import Wander
 from gapless.filters.update import assess, correct
 from gapless.inertial import propagate as at
@@ -17,9 +17,10 @@ from gapless.inertial.belief import Belief, inject
 from gapless.inertial.layout import ROW
 from gapless.journal import Journal
 from gapless.measurements.base import Observation
-from gapless.pieces import EPS, GAP, pieces, without_holes
+from gapless.pieces import GAP, pieces, without_holes
 from gapless.settings import Settings
 from gapless.state import Past, State
+from gapless.tape import Tape
 from gapless.units import DEG
 
 __all__ = ["Navigator", "Settings"]
@@ -36,6 +37,8 @@ class Navigator:
     ----------
     journal : Journal
         Rows and innovations so far.
+    tape : Tape or None
+        Where a smoother listens; no part of a snapshot.
     """
 
     def __init__(self, settings: Settings) -> None:
@@ -47,6 +50,7 @@ class Navigator:
         self._state = State(belief, settings.gate.copy(), constraints, settings.aligner.copy(), wander)
         self._past = Past(settings.lateness)
         self.dropped = 0
+        self.tape: Tape | None = None
 
     @property
     def belief(self) -> Belief:
@@ -195,6 +199,8 @@ class Navigator:
                 block.time, block.dt, block.dtheta, block.dvel, first, end, s.period, s.tick, flush,
             )  # fmt: skip
             state.clock = float(block.time[first - 1])
+            if self.tape is not None and b.memory[at.COV_DT] == 0.0:
+                self.tape.stepped(b)
             ticked = b.memory[at.TICK_DT] >= s.tick - at.ROUND
             if ticked or (due and first == last):  # never at a block's end: blocks change no bits
                 b.trail.mark(state.clock, b.v_n)
@@ -220,6 +226,8 @@ class Navigator:
         state.aligner = self.settings.aligner.copy()
         if state.aligned:
             state.belief.lose_track(begin, begin - state.clock)
+            if self.tape is not None:
+                self.tape.forgot(everything=False)
         state.clock = begin
 
     def _tick(self) -> None:
@@ -237,10 +245,13 @@ class Navigator:
 
     def _row(self) -> None:
         """Write a row where one is due; it changes nothing of the belief."""
-        state, row = self._state, self.settings.row
+        state, often = self._state, self.settings.row
         if state.clock >= state.next_row - EPS:
-            state.next_row = max(state.next_row + row, state.clock + 0.5 * row)
-            self.journal.row(state.clock, state.belief, state.wander.response, self._source())
+            state.next_row = max(state.next_row + often, state.clock + 0.5 * often)
+            row = state.clock, state.belief, state.wander.response, self._source()
+            self.journal.row(*row)
+            if self.tape is not None:
+                self.tape.row(*row)
 
     def _source(self) -> str:
         heard, now = self._state.heard, self._state.clock
@@ -274,6 +285,8 @@ class Navigator:
         b.course_heading(start.sd_heading)
         b.memory[:] = 0.0
         b.memory[at.TIME] = state.clock
+        if self.tape is not None:
+            self.tape.forgot(everything=first, course=True)
         state.aligner, state.aligned = None, True
         state.next_row = max(state.next_row, state.clock)
         self.journal.align(state.clock, start.evidence)
@@ -296,9 +309,11 @@ class Navigator:
         elif verdict.factor != 1.0:
             r = o.R * verdict.factor
             s = s + (r - o.R)
+        if self.tape is not None:
+            self.tape.corrected(o.H, hp, s, z)
         dx = correct(b.p, ROW, n, z, o.H, r, s, hp, 1.0)
         if o.slow is not None:
-            state.wander.hear(time, b.P[:3, :3], r, o.slow)
+            state.wander.hear(time, b.p, ROW, r, o.slow)
         if b.error.size:
             b.error[:n] += dx
         else:

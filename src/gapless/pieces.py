@@ -8,13 +8,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from gapless.events import ImuBlock, Reading
+from gapless.events import EPS, ImuBlock, Reading
 from gapless.inertial import propagate as at
 from gapless.inertial.increments import split
 from gapless.recording import Array
 
-EPS = 1e-6
-"""Times closer than this are the same instant [s]."""
 GAP = 0.5
 """A longer silence of the IMU is not bridged: it ends in a new alignment [s]."""
 

@@ -16,7 +16,61 @@ from typing import Self
 
 import numpy as np
 
+from gapless._numba import inline, kernel
+from gapless.filters.update import cholesky, solve
 from gapless.recording import Array
+
+
+@inline
+def _times(a: Array, b: Array) -> Array:
+    """A B', three by three."""
+    c = np.zeros((3, 3))
+    for i in range(3):
+        for j in range(3):
+            for k in range(3):
+                c[i, j] += a[i, k] * b[j, k]
+    return c
+
+
+@kernel
+def respond(
+    p: Array, row: int, r: Array, slow: Array, decay: float, response: Array, shared: Array
+) -> tuple[Array, Array]:
+    """Moments after one update with z = e + slow w + v.
+
+    Parameters
+    ----------
+    p : ndarray, shape (row * row,)
+        Covariance after the update, its first three states those observed: the gain is p r^-1.
+    row : int
+    r : ndarray, shape (3, 3)
+        Covariance of the observation, as it counted.
+    slow : ndarray, shape (3,)
+        Standard deviation of the part that wanders.
+    decay : float
+        Of w since the last update.
+    response, shared : ndarray, shape (3, 3)
+        As in `Wander`, before.
+
+    Returns
+    -------
+    response, shared : ndarray, shape (3, 3)
+        With A = I - K and B = K diag(slow): A response A' + B B' - A shared B' - B shared' A' and
+        A shared - B, shared decayed.
+    """
+    low, rest, push, turned = cholesky(r), np.zeros((3, 3)), np.empty((3, 3)), np.empty((3, 3))
+    for i in range(3):
+        gain = p[i * row : i * row + 3].copy()
+        solve(low, gain)
+        rest[i, i] = 1.0
+        for j in range(3):
+            rest[i, j] -= gain[j]
+            push[i, j] = gain[j] * slow[j]
+            turned[j, i] = shared[i, j] * decay
+    kept = _times(rest, turned)
+    cross = _times(kept, push)
+    new = _times(_times(rest, response), rest) + _times(push, push) - cross - cross.T
+    return new, kept - push
 
 
 @dataclass
@@ -40,26 +94,19 @@ class Wander:
     shared: Array = field(default_factory=lambda: np.zeros((3, 3)))
     time: float = -math.inf
 
-    def hear(self, time: float, p: Array, r: Array, slow: Array) -> None:
-        """Follow the filter through one update with z = e + slow w + v.
+    def hear(self, time: float, p: Array, row: int, r: Array, slow: Array) -> None:
+        """Follow the filter through one update.
 
         Parameters
         ----------
         time : float
             [s]
-        p : ndarray, shape (3, 3)
-            Covariance of what is observed, after the update; the gain is then p r^-1.
-        r : ndarray, shape (3, 3)
-            Covariance of the observation, as it counted.
-        slow : ndarray, shape (3,)
-            Standard deviation of the part that wanders.
+        p, row, r, slow
+            As for `respond`.
         """
-        shared = self.shared * math.exp(-(time - self.time) / self.tau)
-        gain = p @ np.linalg.inv(r)
-        rest, push = np.eye(3) - gain, gain * slow
-        both = rest @ shared @ push.T
-        self.response = rest @ self.response @ rest.T + push @ push.T - both - both.T
-        self.shared, self.time = rest @ shared - push, time
+        decay = math.exp(-(time - self.time) / self.tau)
+        self.response, self.shared = respond(p, row, r, slow, decay, self.response, self.shared)
+        self.time = time
 
     def copy(self) -> Self:
         """An independent copy (arrays are never changed in place).
