@@ -117,7 +117,7 @@ class _FirstPass:
         """Up to six passes; each starts from the offsets of the one before."""
         for jitter in JITTER:
             navigator = self._navigate(jitter)
-            if len(navigator.journal.times) < 300:
+            if len(navigator.journal.times) < 150:  # half a minute
                 return
             if self._learn(navigator) < SETTLED:
                 return
@@ -131,7 +131,7 @@ class _FirstPass:
         coarse = replace(self.system.filter, tick=0.2)
         system = replace(self.system, gnss=gnss, filter=coarse, sensors=sensors)
         navigator = Navigator(
-            settings(system, self.past, self.offsets, _given_mounting(system), self.density)
+            settings(system, self.past, self.offsets, _given_mounting(system), self.density, coarse.tick)
         )
         for event in events(self.past, stamps(system, self.offsets), thin=0.45):
             navigator.step(event)
