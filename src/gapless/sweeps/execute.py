@@ -15,6 +15,7 @@ from gapless.scenarios import plan
 from gapless.sweeps.run import Run, label, versions
 from gapless.sweeps.sources import Simulated, recording
 from gapless.systems.fuse import fuse
+from gapless.systems.smooth import smooth
 from gapless.units import DEG
 
 NAN: Final = math.nan
@@ -126,7 +127,8 @@ def execute(run: Run) -> Row:
     except Exception as error:
         return failed(run, error)
     try:
-        solution = fuse(log, run.recipe, plan(run.scenario, log.duration))
+        navigate = smooth if run.smooth else fuse
+        solution = navigate(log, run.recipe, plan(run.scenario, log.duration))
         return _scored(run, log, score(solution, log))
     except GaplessError as error:
         aligned = False if isinstance(error, AlignmentError) else None

@@ -41,6 +41,8 @@ class Run(Struct, frozen=True):
         New values for keys of the recipe, by dotted name.
     seed : int
         Of a simulated drive.
+    smooth : bool
+        Let what came later correct what came before: the bound that no real-time run can pass.
     versions : dict of str to str
         Of the packages that the bits of a result depend on.
     """
@@ -50,6 +52,7 @@ class Run(Struct, frozen=True):
     system: System
     override: dict[str, Any] = {}
     seed: int = 0
+    smooth: bool = False
     versions: dict[str, str] = msgspec.field(default_factory=versions)
 
     @property

@@ -12,6 +12,7 @@ from typing import Annotated, Any, Final
 
 import msgspec
 from msgspec import Meta, Struct
+from msgspec.structs import replace
 
 from gapless.errors import ConfigError, GaplessError
 from gapless.scenarios import parse as parse_scenario
@@ -26,6 +27,9 @@ Name = Annotated[str, Meta(pattern=r"^[A-Za-z0-9][A-Za-z0-9._-]*$")]
 Seed = Annotated[int, Meta(ge=0)]
 Texts = str | tuple[str, ...]
 Drive = tuple[Simulated | Logged, int]
+Method = tuple[System, dict[str, Any], bool]
+SMOOTHED: Final = "smoothed"
+"""The system that is "constraints", smoothed over the whole recording."""
 PLAN: Final = "every=180,length=60,first=240"
 """Scenario of a study that names none."""
 
@@ -77,22 +81,21 @@ class Block:
     drives : tuple of (Simulated or Logged, int)
         Recordings with the seed that simulates them, 0 for a log.
     scenarios : tuple of tuple of str
-    systems : tuple of (System, dict)
-        Recipes with what is changed in them.
+    systems : tuple of (System, dict, bool)
+        Recipes with what is changed in them, and whether they are smoothed.
     """
 
     drives: tuple[Drive, ...]
     scenarios: tuple[tuple[str, ...], ...]
-    systems: tuple[tuple[System, dict[str, Any]], ...]
+    systems: tuple[Method, ...]
 
     def __len__(self) -> int:
         return len(self.drives) * len(self.scenarios) * len(self.systems)
 
     def __iter__(self) -> Iterator[Run]:
-        for (source, seed), scenario, (system, override) in product(
-            self.drives, self.scenarios, self.systems
-        ):
-            yield Run(source, scenario, system, override, seed)
+        axes = product(self.drives, self.scenarios, self.systems)
+        for (source, seed), scenario, (system, override, smooth) in axes:
+            yield Run(source, scenario, system, override, seed, smooth)
 
 
 @dataclass(frozen=True)
@@ -193,16 +196,18 @@ def _scenario(texts: Texts, where: str) -> tuple[str, ...]:
     return _texts(texts)
 
 
-def _systems(
-    name: str, variants: Iterable[dict[str, Any]], folder: Path, where: str
-) -> list[tuple[System, dict[str, Any]]]:
+def _systems(name: str, variants: Iterable[dict[str, Any]], folder: Path, where: str) -> list[Method]:
     """A system with every override, whose values come out as the recipe's types have them."""
+    smooth = name == SMOOTHED
     with _at(where):
-        system = load(folder / name if name.endswith(".toml") else name)
+        if smooth:
+            system = replace(load("constraints"), name=SMOOTHED)
+        else:
+            system = load(folder / name if name.endswith(".toml") else name)
     found = []
     for override in variants:
         tables = msgspec.to_builtins(changed(system, override, f"{where} with override"))
-        found.append((system, {key: _value(tables, key) for key in override}))
+        found.append((system, {key: _value(tables, key) for key in override}, smooth))
     return found
 
 

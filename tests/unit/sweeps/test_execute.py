@@ -11,6 +11,7 @@ from gapless.evaluation import OutageScore
 from gapless.sweeps.execute import execute, outage_columns
 from gapless.sweeps.run import Run
 from gapless.sweeps.sources import logged, recording
+from gapless.systems.smooth import smooth
 
 
 def test_same_run_same_bits():
@@ -39,6 +40,13 @@ def test_figures_are_those_of_the_score():
         assert told["horizontal_end"] == one_outage.horizontal_end
         assert told["heading_deg_max"] == math.degrees(one_outage.heading_max)
         assert told["labels"] == "; ".join(one_outage.labels)
+
+
+def test_a_smoothed_run_is_smoothed():
+    drive = gp.simulate_drive("urban", "consumer", 100.0, 2)
+    solution = smooth(drive, gp.load_system("constraints"), gp.plan(["65:90"], drive.duration))
+    (outage,) = gp.score(solution, drive).outages
+    assert execute(run(2, smooth=True)).horizontal_max_worst == outage.horizontal_max
 
 
 def test_every_field_of_an_outages_score_has_its_column():

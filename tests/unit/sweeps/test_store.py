@@ -26,11 +26,12 @@ renamed, replace = 0, os.replace
 
 def dying(*names):
     global renamed
-    renamed += 1
-    if renamed == 3 and when == "before":
+    ours = str(names[1]).startswith(out)  # kernels that are compiled are renamed too
+    renamed += ours
+    if ours and renamed == 3 and when == "before":
         os.kill(os.getpid(), signal.SIGKILL)
     replace(*names)
-    if renamed == 3:
+    if ours and renamed == 3:
         os.kill(os.getpid(), signal.SIGKILL)
 
 os.replace = dying

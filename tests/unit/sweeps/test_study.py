@@ -57,6 +57,12 @@ def test_paths_are_seen_from_the_study(plan, tmp_path):
     assert run.system.sensors == ("position",)
 
 
+def test_smoothed_is_a_system(plan):
+    (run,) = plan('systems = ["smoothed"]\n[simulated]')
+    assert (run.smooth, run.system.name) == (True, "smoothed")
+    assert run.system.constraints == gp.load_system("constraints").constraints
+
+
 def test_a_study_is_named_by_its_file_or_by_itself(plan):
     assert plan("[simulated]", "first.toml").name == "first"
     assert plan('name = "second"\n[simulated]', "first.toml").name == "second"
