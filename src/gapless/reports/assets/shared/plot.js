@@ -21,17 +21,17 @@ class Plot {
     if (spec.note) this.figure.append(element("p", spec.note));
     host.append(this.figure);
     this.values = spec.series.map((s, k) => {
-      const entry = element("span"), mark = element("i", "", spec.area === k ? "area" : ""), value = element("b");
+      const entry = element("span"), mark = element("i", "", this.area(k) ? "area" : ""), value = element("b");
       mark.style.color = mark.style.borderColor = `var(--${this.hue(k)})`;
-      if (s.look !== undefined) mark.replaceWith(swatch(s.look));
       entry.append(s.look === undefined ? mark : swatch(s.look), s.name, value);
-      legend.append(entry);
+      if (!s.silent) legend.append(entry);
       return value;
     });
     plots.add(this);
     near.observe(this.box);
     this.box.addEventListener("keydown", e => this.key(e));
   }
+  area(k) { return this.spec.area === k || Boolean(this.spec.series[k].area); }
   hue(k) { return this.spec.series[k].hue || (this.spec.area === k ? "c0" : "c" + (k % 7)); }
   destroy() { plots.delete(this); near.unobserve(this.box); if (this.watch) this.watch.disconnect(); if (this.u) this.u.destroy(); this.figure.remove(); }
 
@@ -82,7 +82,7 @@ class Plot {
       const size = spec.t.length < 400 ? 4.5 : 3.4;
       return { stroke: () => colour(hue), paths: () => null, points: { show: true, size, width: 0, fill: () => colour(hue, spec.t.length > 1200 ? 0.6 : 0.85) } };
     }
-    if (spec.area === k) return { width: 0, stroke: () => colour(hue), fill: () => colour(hue, 0.17), points: { show: false } };
+    if (this.area(k)) return { width: 0, stroke: () => colour(hue), fill: () => colour(hue, spec.area === k ? 0.17 : 0.1), points: { show: false } };
     return { stroke: () => colour(hue), width: s.width || 1.5, dash: s.dash, points: { show: false } };
   }
   range(low, high) {

@@ -1,0 +1,70 @@
+// What the reader chose: recording, protocol, length, systems, and the outage that is open.
+const state = {
+  r: data.recordings.length === 1 ? 0 : -1, p: 0,
+  length: data.lengths.includes(60) ? 60 : data.lengths[data.lengths.length >> 1],
+  systems: new Set(data.systems.map((_, k) => k)), open: null,
+};
+const onState = [];
+function change(part) {
+  const filtered = ["r", "p", "length"].some(key => key in part && part[key] !== state[key]);
+  Object.assign(state, part);
+  if (filtered && !("open" in part)) state.open = null;
+  for (const tell of onState) tell(filtered);
+}
+const visible = () => data.systems.map((_, k) => k).filter(k => state.systems.has(k));
+const chosen = card => (state.r < 0 || card.r === state.r) && card.p === state.p && card.length === state.length;
+const SCORE = Object.fromEntries(data.scores.map((name, k) => [name, k]));
+const scoreOf = (card, k, name) => card.scores[k] ? card.scores[k][SCORE[name]] : null;
+const ahead = k => !data.systems[k].causal;
+
+function systemName(k) {
+  const e = element("span", "", "system");
+  e.append(swatch(k), element("span", data.systems[k].name));
+  if (ahead(k)) e.append(element("small", "looks ahead", "pill", { title: "Not causal: it uses data from after the moment; a bound, not a competitor" }));
+  return e;
+}
+
+// The bar of choices at the top.
+const choices = [];
+function segmented(label, key, options) {
+  if (options.length < 2) return null;
+  const box = element("div", "", "segments", { role: "group", "aria-label": label });
+  box.append(element("span", label));
+  for (const [value, name] of options) {
+    const b = button(name, "", () => change({ [key]: value }));
+    choices.push(() => b.setAttribute("aria-pressed", state[key] === value));
+    box.append(b);
+  }
+  return box;
+}
+function recordingChoice() {
+  if (data.recordings.length < 2) return null;
+  const label = element("label", "Recording "), select = element("select", "", "", { id: "recording" });
+  select.append(new Option("all", -1), ...data.recordings.map((r, k) => new Option(r.name, k)));
+  select.addEventListener("change", () => change({ r: +select.value }));
+  choices.push(() => { select.value = state.r; });
+  label.append(select);
+  return label;
+}
+function systemToggles() {
+  const box = element("div", "", "segments toggles", { role: "group", "aria-label": "Systems shown" });
+  data.systems.forEach((s, k) => {
+    const b = button("", "", () => {
+      const next = new Set(state.systems);
+      if (!next.delete(k)) next.add(k);
+      if (next.size) change({ systems: next });
+    }, { title: s.description || s.name, "data-system": s.name });
+    b.append(swatch(k), s.name);
+    choices.push(() => b.setAttribute("aria-pressed", state.systems.has(k)));
+    box.append(b);
+  });
+  return box;
+}
+byId("filters").append(...[
+  recordingChoice(),
+  segmented("Outage", "length", data.lengths.map(v => [v, `${v} s`])),
+  segmented("Protocol", "p", data.protocols.map((name, k) => [k, name])),
+  systemToggles(),
+].filter(Boolean));
+byId("filters").addEventListener("submit", e => e.preventDefault());
+onState.push(() => { for (const show of choices) show(); });

@@ -1,0 +1,143 @@
+"""The page of a bench folder, made from its files alone."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from html import escape
+from pathlib import Path
+from typing import Any
+
+from gapless.io.writers.atomic import atomic
+from gapless.reports.background import Feature
+from gapless.reports.bench import boards
+from gapless.reports.bench.folder import Bench, lengths_of, read_bench
+from gapless.reports.bench.outages import CURVES, SCORES, curves, outage_cards
+from gapless.reports.bench.tracks import tracks
+from gapless.reports.numbers import compact, distance, duration
+from gapless.reports.page import Content, Tile, fill, render
+
+_SCRIPTS = ("state", "dots", "leaderboard", "pairs", "ages", "track", "cards", "details", "main")
+
+
+def write_bench_report(folder: Path, background: Sequence[Feature] = ()) -> Path:
+    """Write `report.html` into a bench folder.
+
+    Parameters
+    ----------
+    folder : Path
+        Where `gapless bench` wrote its results.
+    background : sequence of Feature
+        From `gapless.reports.background.read_background`, drawn beneath the tracks.
+
+    Returns
+    -------
+    Path
+        Of the page.
+
+    Raises
+    ------
+    ConfigError
+        If a file is missing or is not what a bench writes.
+    """
+    path = Path(folder) / "report.html"
+    text = bench_page(read_bench(Path(folder)), background)
+    with atomic(path) as temporary:
+        temporary.write_text(text, encoding="utf-8")
+    return path
+
+
+def bench_page(bench: Bench, background: Sequence[Feature] = ()) -> str:
+    """The page as text.
+
+    Parameters
+    ----------
+    bench : Bench
+    background : sequence of Feature
+
+    Returns
+    -------
+    str
+        HTML.
+    """
+    data = bench_payload(bench, background)
+    names = bench.recordings
+    content = Content(
+        name=names[0] if len(names) == 1 else f"{len(names)} recordings",
+        kind="bench",
+        lead=_lead(bench, data),
+        tiles=_tiles(bench, data),
+        body=fill("bench/body.html", {"tables": escape(bench.tables)}),
+        data=data,
+        scripts=tuple(f"bench/{name}.js" for name in _SCRIPTS),
+        styles=("bench/bench.css",),
+    )
+    return render(content)
+
+
+def bench_payload(bench: Bench, background: Sequence[Feature] = ()) -> dict[str, Any]:
+    """Data of the page's scripts.
+
+    Parameters
+    ----------
+    bench : Bench
+    background : sequence of Feature
+
+    Returns
+    -------
+    dict
+        JSON-able.
+    """
+    cards, places = outage_cards(bench)
+    ages = curves(bench, cards, places)
+    drawn = tracks(bench, cards, places, background)
+    told, parts = boards.runs(bench)
+    facts = bench.facts
+    return {
+        "recordings": facts["recordings"],
+        "systems": facts["systems"],
+        "protocols": facts["protocols"],
+        "lengths": lengths_of(bench.outages["length"]),
+        "arguments": [str(word) for word in facts.get("arguments") or []],
+        "wall_time": facts.get("wall_time"),
+        "board": boards.rows_of(bench, bench.leaderboard),
+        "pairs": boards.rows_of(bench, bench.pairs),
+        "scores": SCORES,
+        "columns": CURVES,
+        "outages": cards,
+        "ages": ages,
+        "tracks": drawn,
+        "runs": told,
+        "parts": parts,
+        "apart": boards.apart(cards),
+        "prefix": boards.prefix_checks(bench),
+        "embedded": f"Errors against age hold at most {ages['most']} points of each outage and system; "
+        "every epoch is in ages.parquet.",
+    }
+
+
+def _lead(bench: Bench, data: dict[str, Any]) -> str:
+    lengths = ", ".join(compact(v) for v in data["lengths"])
+    systems = ", ".join(f"\u201c{name}\u201d" for name in bench.systems)
+    return f"{systems} through GNSS outages of {lengths} s, each scored against the truth that was withheld."
+
+
+def _tiles(bench: Bench, data: dict[str, Any]) -> list[Tile]:
+    facts, cards = bench.facts, data["outages"]
+    hours = sum(float(one["duration"]) for one in facts["recordings"])
+    moved = sum(float(one["distance"]) for one in facts["recordings"])
+    apart = sum(bool(card["labels"]) for card in cards)
+    failed = [one for one in data["prefix"] if not one["passed"]]
+    checks = len(data["prefix"])
+    found: list[Tile] = [
+        ("Recordings", str(len(bench.recordings)), f"{duration(hours)}, {distance(moved)}"),
+        ("Systems", str(len(bench.systems)), ", ".join(bench.systems)),
+        ("Outages", str(len(cards)), " and ".join(map(str, facts["protocols"]))),
+        ("Set apart", str(apart), "labelled, counted, not in the figures"),
+    ]
+    if checks:
+        value = f"{checks - len(failed)} of {checks}"
+        found.append(("Prefix checks", value, "passed: no look into the future" if not failed else "passed"))
+    if facts.get("wall_time") is not None:
+        runs = f"{len(data['runs'])} runs" if data["runs"] else ""
+        found.append(("Wall time", duration(float(facts["wall_time"])), runs))
+    return found
