@@ -40,7 +40,7 @@ def make(
     outages, ages, tracks, runs, facts = [], [], [], [], []
     for k, recording in enumerate(recordings):
         t, ned, v_n, _ = fake_drive.drive(duration, np.random.default_rng(8 + k))
-        lla = earth.ned_to_lla(ned, fake_drive.ORIGIN + [0.02 * k, 0.0, 0.0])
+        lla = earth.ned_to_lla(ned, _origin(k))
         deg = np.degrees(lla[:, :2])
         _add(tracks, t[::5], deg[::5], recording, "truth", "", "", np.nan, np.full((len(t[::5]), 3), np.nan))
         facts.append(
@@ -74,15 +74,11 @@ def make(
         "gapless": "0.1.0",
         "arguments": ["bench", *recordings, "--systems", ",".join(systems), "--out", "bench"],
         "recordings": facts,
-        "systems": [
-            {"name": s, "description": SYSTEMS[s][0], "causal": SYSTEMS[s][1]} for s in systems
-        ],
+        "systems": [{"name": s, "description": SYSTEMS[s][0], "causal": SYSTEMS[s][1]} for s in systems],
         "protocols": list(protocols),
         "lengths": list(lengths),
         "shifts": list(shifts),
-        "apart": {
-            label: sum(o["labels"] == label for o in outages) // len(systems) for label in LABELS
-        },
+        "apart": {label: sum(o["labels"] == label for o in outages) // len(systems) for label in LABELS},
         "prefix": [
             {"recording": r, "system": s, "passed": True, "samples": 140}
             for r in recordings
@@ -93,6 +89,10 @@ def make(
     }
     (folder / "bench.json").write_text(json.dumps(bench), "utf-8")
     return folder
+
+
+def _origin(k):
+    return fake_drive.ORIGIN + np.array([0.02 * k, 0.0, 0.0])
 
 
 def _write(path, rows):
@@ -119,7 +119,7 @@ def _add(tracks, t, deg, recording, kind, protocol, scenario, start, ellipse):
 
 
 def _scenario(out, recording, systems, protocol, length, shift, drive):
-    t, ned, v_n = drive
+    t, _, v_n = drive
     scenario = f"every=180,length={length},first=240,shift={shift}"
     for start in np.arange(240.0 + shift, t[-1] - length, 180.0):
         rows = np.flatnonzero((t >= start) & (t < start + length))[:: 10 if length > 30 else 5]
@@ -128,7 +128,15 @@ def _scenario(out, recording, systems, protocol, length, shift, drive):
         for name in systems:
             seed = zlib.crc32(f"{recording}{name}{length}{start}".encode())
             _outage(
-                out, recording, name, protocol, scenario, (start, length, shift, label, moved), rows, drive, seed
+                out,
+                recording,
+                name,
+                protocol,
+                scenario,
+                (start, length, shift, label, moved),
+                rows,
+                drive,
+                seed,
             )
 
 
@@ -153,14 +161,15 @@ def _outage(out, recording, name, protocol, scenario, facts, rows, drive, seed):
     bound = 2.4477 * spread.max(axis=1)
     n, keys = len(age), {"recording": recording, "system": name, "protocol": protocol, "scenario": scenario}
     ages.append(
-        {k: [v] * n for k, v in keys.items()} | {"start": np.full(n, start), "age": age} | one | {"bound": bound}
+        {k: [v] * n for k, v in keys.items()}
+        | {"start": np.full(n, start), "age": age}
+        | one
+        | {"bound": bound}
     )
     c, s = np.cos(heading), np.sin(heading)
     north, east = c * along - s * cross, s * along + c * cross
     k = int(recording.startswith("h"))
-    lla = earth.ned_to_lla(
-        ned[rows] + np.column_stack([north, east, 0 * north]), fake_drive.ORIGIN + [0.02 * k, 0.0, 0.0]
-    )
+    lla = earth.ned_to_lla(ned[rows] + np.column_stack([north, east, 0 * north]), _origin(k))
     ellipse = np.column_stack([2.4477 * spread, np.pi / 2 - heading])
     _add(tracks, t[rows], np.degrees(lla[:, :2]), recording, name, protocol, scenario, start, ellipse)
     inside = one["horizontal"] < bound

@@ -93,7 +93,7 @@ def runs(bench: Bench) -> tuple[list[dict[str, Any]], list[Any]]:
                     parts.append(shape(json.loads(text or "null")))
                 except (ValueError, KeyError, TypeError, AttributeError) as error:
                     raise ConfigError(
-                        f"runs.parquet, row {k + 1}: {name} is not what a bench writes ({error}); run it again"
+                        f"runs.parquet, row {k + 1}: {name} is not a bench's ({error}); run it again"
                     ) from error
                 places[name, text] = len(parts) - 1
             row[name] = places[name, text]
@@ -112,7 +112,11 @@ def _decisions(entries: Any) -> list[list[str]]:
 def _biases(blocks: Any) -> list[list[Any]]:
     """Title, unit, and name, value, sd of each axis."""
     return [
-        [state(name, len(one["value"])).label, one["unit"], *zip(one["axes"], one["value"], one["sd"], strict=True)]
+        [
+            state(name, len(one["value"])).label,
+            one["unit"],
+            *zip(one["axes"], one["value"], one["sd"], strict=True),
+        ]
         for name, one in (blocks or {}).items()
     ]
 

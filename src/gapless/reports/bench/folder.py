@@ -193,7 +193,8 @@ def thinned(rows: Group, most: int) -> Group:
     """
     if len(rows) <= most:
         return rows
-    return rows[np.unique(np.linspace(0, len(rows) - 1, most).astype(int))]
+    kept: Group = rows[np.unique(np.linspace(0, len(rows) - 1, most).astype(int))]
+    return kept
 
 
 def number_or_none(value: float, digits: int = 4) -> float | None:

@@ -37,7 +37,8 @@ def outage_cards(bench: Bench) -> tuple[list[dict[str, Any]], dict[tuple[Any, ..
         Index of the card by (recording, protocol, scenario, start).
     """
     table, protocols = bench.outages, list(bench.facts["protocols"])
-    cards, places = [], {}
+    cards: list[dict[str, Any]] = []
+    places: dict[tuple[Any, ...], int] = {}
     for key, rows in groups(table, _KEYS):
         recording, protocol, scenario, start = key
         if recording not in bench.recordings or protocol not in protocols:
@@ -90,9 +91,7 @@ def curves(bench: Bench, cards: list[dict[str, Any]], places: dict[tuple[Any, ..
         `most`, the points of a curve, and one packed column for each of `CURVES`.
     """
     table = bench.ages
-    found = [
-        (key, rows) for key, rows in groups(table, (*_KEYS, "system")) if key[:4] in places
-    ]
+    found = [(key, rows) for key, rows in groups(table, (*_KEYS, "system")) if key[:4] in places]
     most = int(np.clip(_VALUES / (len(CURVES) * max(len(found), 1)), 12, 240))
     chosen, at = [], 0
     for key, rows in found:

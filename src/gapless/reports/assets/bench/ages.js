@@ -30,6 +30,11 @@ function quantiles(cards, k, name, grid, q) {
 
 const lineOf = k => ({ name: data.systems[k].name, hue: look(k).hue, dash: look(k).dash, look: k, width: 2 });
 const topOf = (...columns) => 1.06 * Math.max(...columns.flat().filter(v => v !== null), 1e-3);
+// From zero, or, on a logarithmic axis, from the smallest error worth showing.
+function errorRange(series, top) {
+  const known = series.filter(s => !s.area).flatMap(s => s.y.filter(v => v > 0));
+  return state.log ? [Math.min(0.5 * top, Math.max(0.05, Math.min(...known, top) * 0.8)), top] : [0, top];
+}
 let agePlots = [];
 function drawAges() {
   for (const p of agePlots) p.destroy();
@@ -37,8 +42,8 @@ function drawAges() {
   const grid = Array.from({ length: AGES + 1 }, (_, i) => length * i / AGES), shown = visible();
   const found = (name, q) => shown.map(k => quantiles(cards, k, name, grid, q));
   const middle = found("horizontal", 0.5), high = found("horizontal", 0.95), bound = found("bound", 0.5);
-  const clock = { ...ageClock(0, length), x: t => t, t: x => x };
-  const spec = (title, note, series, top) => ({ title, unit: "m", note, t: grid, series, range: [0, top], gap: length, over: "the age of the outage" });
+  const clock = ageClock(() => state.open === null ? null : data.outages[state.open].start, length);
+  const spec = (title, note, series, top) => ({ title, unit: "m", note, t: grid, series, range: errorRange(series, top), log: state.log, gap: length, over: "the age of the outage" });
   agePlots = [
     new Plot(byId("ages-charts"), spec("Median horizontal error", `Over ${cards.length} outages of ${length} s.`, shown.map((k, i) => ({ ...lineOf(k), y: middle[i] })), topOf(...middle)), clock),
     new Plot(byId("ages-charts"), spec("95 % of outages lie below", "Shaded: the median bound that each system states for 95 %. An honest system's line runs along the edge of its own shade.",

@@ -21,6 +21,7 @@ function drawCards() {
   if (at >= listed) listed = at + 1;
   const scale = logScale(cards.flatMap(([c]) => visible().map(k => scoreOf(c, k, "horizontal_max"))).filter(v => v !== null));
   byId("count").textContent = `${cards.length} outages${apart ? `, ${apart} of them set apart` : ""}`;
+  byId("axis").replaceChildren(element("span"), axisStrip(scale, "m"), element("span"));
   byId("cards").replaceChildren(...cards.slice(0, listed).map(([card, i]) => cardOf(card, i, scale)));
   byId("more").hidden = cards.length <= listed;
 }
@@ -44,11 +45,12 @@ function cardOf(card, index, scale) {
 function panelOf(card) {
   const panel = element("div", "", "panel"), shown = visible().filter(k => card.scores[k]);
   const jump = button("Show on the track", "jump", () => { benchTrack.home(); byId("map").scrollIntoView({ behavior: "smooth", block: "center" }); byId("map").focus({ preventScroll: true }); });
-  const columns = [["Largest", "horizontal_max"], ["RMS", "horizontal_rmse"], ["At end", "horizontal_end"], ["Along", "along_max"], ["Cross", "cross_max"], ["Vertical", "vertical_max"],
-    ["Velocity", "velocity_max"], ["Heading", "heading_deg_max"], ["% of way", "percent"], ["In 95 %", "coverage_95"], ["NEES", "nees"]];
+  const columns = [["Horizontal, largest [m]", "horizontal_max"], ["RMS [m]", "horizontal_rmse"], ["at the end [m]", "horizontal_end"], ["% of the way", "percent"],
+    ["Along, largest [m]", "along_max"], ["Cross, largest [m]", "cross_max"], ["Vertical, largest [m]", "vertical_max"], ["Velocity, largest [m/s]", "velocity_max"],
+    ["Heading, largest", "heading_deg_max"], ["Truth in the 95 % ellipse", "coverage_95"], ["NEES", "nees"]];
   const text = (v, name) => name === "coverage_95" ? percentText(v) : short(v) + (name.startsWith("heading") && v !== null ? "°" : "");
-  panel.append(chartsOf(card, shown), sheet(`Scores from ${card.start} to ${card.end} s, in metres and m/s`, ["System", ...columns.map(([title]) => [title, "n"])],
-    shown.map(k => [systemName(k), ...columns.map(([, name]) => [text(scoreOf(card, k, name), name), "n"])]), "small"));
+  panel.append(chartsOf(card, shown), sheet(`Scores from ${card.start} to ${card.end} s`, ["", ...shown.map(k => [data.systems[k].name, "n"])],
+    columns.map(([title, name]) => [title, ...shown.map(k => [text(scoreOf(card, k, name), name), "n"])]), "small"));
   const foot = element("p", `Truth: ${card.truth}. NEES of an honest system is about 2; its truth lies in the 95 % ellipse 95 % of the time.${card.labels.length ? ` Set apart: ${card.labels.join(", ")}.` : ""} `, "quiet foot");
   foot.append(jump);
   panel.append(foot);
@@ -56,14 +58,14 @@ function panelOf(card) {
 }
 
 function chartsOf(card, shown) {
-  const host = element("div", "", "group"), length = card.end - card.start, clock = ageClock(card.start, length), told = shown.filter(k => card.curves[k]);
+  const host = element("div", "", "group"), length = card.end - card.start, clock = ageClock(() => card.start, length), told = shown.filter(k => card.curves[k]);
   const column = name => told.map(k => curveOf(card, k, name));
   const ages = column("age"), grid = [...new Set(ages.flat())].sort((a, b) => a - b);
   const onGrid = name => column(name).map((y, i) => ages[i].length === grid.length ? y : grid.map(x => interpolate(ages[i], y, x)));
-  const add = (title, unit, lines, range, more = {}) => openPlots.push(new Plot(host, { title, unit, t: grid, series: lines, range, gap: length, over: "the age of the outage", ...more }, clock));
-  const error = onGrid("horizontal"), bound = onGrid("bound");
+  const add = (title, unit, lines, range, more = {}) => openPlots.push(new Plot(host, { title, unit, t: grid, series: lines, range: range || errorRange(lines, top), gap: length, over: "the age of the outage", ...more }, clock));
+  const error = onGrid("horizontal"), bound = onGrid("bound"), top = Math.min(topOf(...error, ...bound), 4 * topOf(...error));
   add("Horizontal error", "m", [...told.map((k, i) => ({ ...lineOf(k), y: error[i] })), ...told.map((k, i) => ({ name: "", hue: look(k).hue, area: true, silent: true, y: bound[i] }))],
-    [0, Math.min(topOf(...error, ...bound), 4 * topOf(...error))], { wide: true, note: "Shaded: the bound that each system states for 95 %." });
+    null, { wide: true, log: state.log, note: "Shaded: the bound that each system states for 95 %." });
   for (const [title, name, unit] of [["Along the course", "along", "m"], ["Across the course", "cross", "m"], ["Vertical", "vertical", "m"], ["Heading", "heading_deg", "deg"]]) {
     const y = onGrid(name), known = y.flat().filter(v => v !== null);
     if (!known.length) continue;

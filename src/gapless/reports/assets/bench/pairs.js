@@ -8,7 +8,7 @@ function drawPairs() {
   if (!rows.length) { byId("pairs-table").replaceChildren(element("p", "No pair of the systems shown was compared.", "quiet")); return; }
   const scale = logScale([1, ...rows.flatMap(b => [b.mean_ratio_lo, b.mean_ratio_hi, b.median_ratio])]);
   const note = element("p", "Ratio of the largest horizontal errors, outage by outage. Filled mark: geometric mean with its 95 % interval; open mark: median. Left of the line, below 1, the system is better than its base. "
-    + "Wilcoxon's p, as it is and corrected for the number of systems." + (own.length || state.r < 0 ? "" : " Over all recordings: single ones were not compared."));
+    + "Wilcoxon's p, as it is and corrected for the number of systems." + (own.length || state.r < 0 ? "" : " Over all recordings: single ones were not compared."), "note");
   byId("pairs-table").replaceChildren(sheet("Ratios of errors on the same outages",
     ["System", [axisStrip(scale, "×"), "wide"], ["Geometric mean", "n"], ["Median ratio", "n"], ["Better in", "n"], ["Worst ratio", "n"], ["p", "n"], ["p corrected", "n"], ["Outages", "n"]],
     rows.map(b => {

@@ -2,8 +2,11 @@
 const state = {
   r: data.recordings.length === 1 ? 0 : -1, p: 0,
   length: data.lengths.includes(60) ? 60 : data.lengths[data.lengths.length >> 1],
-  systems: new Set(data.systems.map((_, k) => k)), open: null,
+  systems: new Set(data.systems.map((_, k) => k)), open: null, log: false,
 };
+// A linear axis shows nothing of systems that differ tenfold.
+const medians = data.board.filter(b => b.r < 0 && b.length === state.length && b.median > 0).map(b => b.median);
+state.log = medians.length > 1 && Math.max(...medians) > 8 * Math.min(...medians);
 const onState = [];
 function change(part) {
   const filtered = ["r", "p", "length"].some(key => key in part && part[key] !== state[key]);
@@ -66,5 +69,6 @@ byId("filters").append(...[
   segmented("Protocol", "p", data.protocols.map((name, k) => [k, name])),
   systemToggles(),
 ].filter(Boolean));
+byId("scale").append(segmented("Error axis", "log", [[false, "linear"], [true, "log"]]));
 byId("filters").addEventListener("submit", e => e.preventDefault());
 onState.push(() => { for (const show of choices) show(); });

@@ -1,5 +1,6 @@
 // One chart: uPlot dressed in the page's colours, made when it comes near the screen, sharing the time cursor.
 const plots = new Set();
+const LINES = [[], [7, 3], [2, 2]];   // of series that are not systems
 const near = new IntersectionObserver(entries => {
   for (const e of entries) if (e.isIntersecting) { near.unobserve(e.target); e.target.plot.build(); }
 }, { rootMargin: "500px" });
@@ -21,7 +22,7 @@ class Plot {
     if (spec.note) this.figure.append(element("p", spec.note));
     host.append(this.figure);
     this.values = spec.series.map((s, k) => {
-      const entry = element("span"), mark = element("i", "", this.area(k) ? "area" : ""), value = element("b");
+      const entry = element("span"), mark = element("i", "", this.area(k) ? "area" : spec.dots ? "dot" : `line${k % LINES.length}`), value = element("b");
       mark.style.color = mark.style.borderColor = `var(--${this.hue(k)})`;
       entry.append(s.look === undefined ? mark : swatch(s.look), s.name, value);
       if (!s.silent) legend.append(entry);
@@ -54,7 +55,7 @@ class Plot {
   options(edges) {
     const { spec } = this, n = spec.series.length, alpha = spec.dots ? 0.16 / n : 0.14;
     return {
-      ...this.size(), legend: { show: false }, padding: [8, 8, 0, 0],
+      ...this.size(), legend: { show: false }, padding: [8, 14, 0, 0],
       cursor: {
         y: false, points: { size: 7, width: 1.5 }, drag: { x: true, y: false, setScale: false },
         bind: { dblclick: () => () => this.clock.all(), mouseleave: () => null },
@@ -83,7 +84,7 @@ class Plot {
       return { stroke: () => colour(hue), paths: () => null, points: { show: true, size, width: 0, fill: () => colour(hue, spec.t.length > 1200 ? 0.6 : 0.85) } };
     }
     if (this.area(k)) return { width: 0, stroke: () => colour(hue), fill: () => colour(hue, spec.area === k ? 0.17 : 0.1), points: { show: false } };
-    return { stroke: () => colour(hue), width: s.width || 1.5, dash: s.dash, points: { show: false } };
+    return { stroke: () => colour(hue), width: s.width || 1.5, dash: s.dash || LINES[k % LINES.length], points: { show: false } };
   }
   range(low, high) {
     const { spec } = this;
@@ -95,7 +96,7 @@ class Plot {
 
   point(e) {
     const box = this.u.over.getBoundingClientRect(), x = e.clientX - box.left;
-    if (x >= 0 && x <= box.width) setTime(this.clock.t(this.u.posToVal(x, "x")));
+    if (x >= 0 && x <= box.width) this.clock.set(this.u.posToVal(x, "x"));
   }
   selected(u) {
     if (u.select.width > 5) this.clock.zoom(u.posToVal(u.select.left, "x"), u.posToVal(u.select.left + u.select.width, "x"));
@@ -103,12 +104,12 @@ class Plot {
   }
   key(e) {
     const [a, b] = this.clock.range(), step = (b - a) / (e.shiftKey ? 20 : 200);
-    const from = view.now === null ? a : Math.min(Math.max(this.clock.x(view.now), a), b);
+    const now = this.clock.get(), from = now === null ? a : Math.min(Math.max(now, a), b);
     const to = { ArrowLeft: from - step, ArrowRight: from + step, Home: a, End: b }[e.key];
     const half = { "+": (b - a) / 3, "=": (b - a) / 3, "-": b - a }[e.key];
     if (e.key === "Escape") this.clock.all();
     else if (half) this.clock.zoom(from - half, from + half);
-    else if (to !== undefined) setTime(this.clock.t(to));
+    else if (to !== undefined) this.clock.set(to);
     else return;
     e.preventDefault();
   }
@@ -116,7 +117,7 @@ class Plot {
   // Put the cursor where the page's time is.
   follow() {
     const { u, spec, clock } = this, [a, b] = clock.range();
-    const x = view.now === null ? null : clock.x(view.now), inside = x !== null && x >= a - 1e-6 && x <= b + 1e-6;
+    const x = clock.get(), inside = x !== null && x >= a - 1e-6 && x <= b + 1e-6;
     if (u) u.setCursor({ left: inside ? u.valToPos(x, "x") : -10, top: inside ? 1 : -10 }, false);
     const i = u && inside ? this.nearest(x) : -1;
     spec.series.forEach((s, k) => {

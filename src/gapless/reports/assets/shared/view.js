@@ -17,21 +17,25 @@ function setSpan(span) {
   setRange(...span);
   setTime(null);
 }
-// Time as the charts of a whole drive have it; a chart over the age of an outage has its own.
+// A clock is what a chart has instead of a time axis of its own: where its cursor is, which stretch it shows.
 const driveClock = {
-  x: t => t, t: x => x,
+  get: () => view.now, set: setTime,
   range: () => [view.from, view.to],
   full: () => view.from <= view.span[0] && view.to >= view.span[1],
   zoom: (a, b) => setRange(a, b),
   all: () => setRange(...view.span),
 };
-const ageClock = (start, length) => {
+// Over the age of an outage that begins at `start()`; null where no outage is open, then the cursor is the chart's own.
+function ageClock(start, length) {
   const shown = [0, length];
+  let own = null;
+  const show = (a, b) => { shown[0] = Math.max(0, a); shown[1] = Math.min(length, b); for (const tell of onRange) tell(); };
   return {
-    x: t => t - start, t: x => x + start,
+    get: () => start() === null ? own : view.now === null ? null : view.now - start(),
+    set: x => { if (start() === null) { own = x; for (const tell of onTime) tell(); } else setTime(x + start()); },
     range: () => shown,
     full: () => shown[0] <= 0 && shown[1] >= length,
-    zoom: (a, b) => { shown[0] = Math.max(0, a); shown[1] = Math.min(length, b); for (const tell of onRange) tell(); },
-    all: () => { shown[0] = 0; shown[1] = length; for (const tell of onRange) tell(); },
+    zoom: show,
+    all: () => show(0, length),
   };
-};
+}
