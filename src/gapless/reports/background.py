@@ -56,7 +56,7 @@ def read_background(path: Path) -> list[Feature]:
         found = list(_features(json.loads(path.read_text(encoding="utf-8"))))
     except OSError as error:
         raise ConfigError(f"{path}: {error.strerror}; --background takes a GeoJSON file") from error
-    except (ValueError, TypeError, KeyError, AttributeError, RecursionError) as error:
+    except (ValueError, TypeError, LookupError, AttributeError, RecursionError) as error:
         raise ConfigError(
             f"{path}: not GeoJSON ({error}); --background takes lines and polygons as GeoJSON"
         ) from error

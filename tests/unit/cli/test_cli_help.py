@@ -5,8 +5,8 @@ import sys
 
 import pytest
 
-VERBS = ("", "inspect", "fuse", "simulate", "convert")
-HEAVY = ("numpy", "numba", "pyarrow", "msgspec", "pandas", "scipy")
+VERBS = ("", "inspect", "fuse", "report", "simulate", "convert")
+HEAVY = ("matplotlib", "numpy", "numba", "pyarrow", "msgspec", "pandas", "scipy")
 
 
 @pytest.mark.parametrize("verb", VERBS)

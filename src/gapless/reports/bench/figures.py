@@ -85,12 +85,12 @@ def _style(k: int) -> dict[str, Any]:
     return {"color": _COLOURS[k % len(_COLOURS)], "linestyle": _DASHES[k % len(_DASHES)]}
 
 
-def _finish(axes: Any, x: str, y: str) -> None:
+def _finish(axes: Any, x: str, y: str, note: str = "") -> None:
     axes.set_xlabel(x, fontsize=8)
     axes.set_ylabel(y, fontsize=8)
     axes.grid(alpha=0.25, linewidth=0.5)
     if axes.get_legend_handles_labels()[1]:
-        axes.legend(fontsize=7, frameon=False)
+        axes.legend(fontsize=7, frameon=False, title=note or None, title_fontsize=6.5)
 
 
 def _track(bench: Bench, recording: str, axes: Any) -> None:
@@ -138,7 +138,7 @@ def _leaderboard(bench: Bench, protocol: str, axes: Any) -> None:
             )
     axes.set_yscale("log")
     axes.set_xticks(range(len(lengths)), [f"{v:g}" for v in lengths])
-    _finish(axes, "length of the outage [s]", "largest horizontal error [m]")
+    _finish(axes, "length of the outage [s]", "largest horizontal error [m]", "filled: median, open: P95")
 
 
 def _ages(bench: Bench, protocol: str, length: float, axes: Any) -> None:
@@ -161,7 +161,7 @@ def _ages(bench: Bench, protocol: str, length: float, axes: Any) -> None:
         axes.plot(grid[told], middle, linewidth=1.5, label=system, **_style(k))
         axes.plot(grid[told], high, linewidth=0.6, alpha=0.8, **_style(k))
     axes.set_yscale("log")
-    _finish(axes, "age of the outage [s]", "horizontal error [m]")
+    _finish(axes, "age of the outage [s]", "horizontal error [m]", "thick: median, thin: P95")
 
 
 def _counted(bench: Bench, protocol: str, length: float) -> set[tuple[Any, ...]]:

@@ -39,20 +39,22 @@ def outage_cards(bench: Bench) -> tuple[list[dict[str, Any]], dict[tuple[Any, ..
     table, protocols = bench.outages, list(bench.facts["protocols"])
     cards: list[dict[str, Any]] = []
     places: dict[tuple[Any, ...], int] = {}
-    for key, rows in groups(table, _KEYS):
-        recording, protocol, scenario, start = key
-        if recording not in bench.recordings or protocol not in protocols:
-            continue
+    found = [
+        (bench.recordings.index(key[0]), protocols.index(key[1]), key, rows)
+        for key, rows in groups(table, _KEYS)
+        if key[0] in bench.recordings and key[1] in protocols
+    ]
+    for r, p, key, rows in sorted(found, key=lambda one: (*one[:2], one[2][3], one[2][2])):
         first = rows[0]
         places[key] = len(cards)
         cards.append(
             {
-                "r": bench.recordings.index(recording),
-                "p": protocols.index(protocol),
-                "scenario": scenario,
+                "r": r,
+                "p": p,
+                "scenario": key[2],
                 "length": float(table["length"][first]),
                 "shift": number_or_none(table["shift"][first]),
-                "start": round(float(start), 3),
+                "start": round(float(key[3]), 3),
                 "end": round(float(table["end"][first]), 3),
                 "labels": [word for word in str(table["labels"][first]).split("; ") if word],
                 "truth": str(table["truth"][first]),
