@@ -61,8 +61,10 @@ class Visit:
         )
         tab.on("pageerror", lambda e: self.complaints.append(str(e)))
         self.address = path.as_uri()
+        tab.set_default_timeout(4000)
         tab.goto(self.address)
-        tab.wait_for_selector(".plot .u-over")
+        tab.wait_for_function("document.getElementById('embedded').textContent !== ''")
+        tab.wait_for_timeout(60)  # a frame or two, for what is drawn in them
 
 
 @pytest.fixture

@@ -12,7 +12,7 @@ def test_outages_are_sorted_worst_first_and_by_time(visit):
     assert worst == sorted(worst, reverse=True)
     tab.select_option("#sort", "-2")
     tab.select_option("#recording", "0")
-    starts = [float(text.split("–")[0]) for text in tab.locator("#cards .title b").all_inner_texts()]
+    starts = [float(text.split("\u2013")[0]) for text in tab.locator("#cards .title b").all_inner_texts()]
     assert starts == sorted(starts)
 
 

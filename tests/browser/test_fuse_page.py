@@ -18,9 +18,9 @@ def test_the_time_cursor_is_shared_by_charts_track_and_slider(visit):
     # The middle of the chart is the middle of the drive, to one pixel.
     assert abs(at - (low + high) / 2) < (high - low) / box["width"] * 1.5
     lines = tab.evaluate(
-        """[...document.querySelectorAll('.plot')].filter(p => p.plot.u)
-           .map(p => p.querySelector('.u-cursor-x').getBoundingClientRect().left
-                     - p.querySelector('.u-over').getBoundingClientRect().left - p.plot.u.over.clientWidth / 2)"""
+        """[...document.querySelectorAll('.plot')].filter(p => p.plot.u).map(p =>
+           p.querySelector('.u-cursor-x').getBoundingClientRect().left
+           - p.querySelector('.u-over').getBoundingClientRect().left - p.plot.u.over.clientWidth / 2)"""
     )
     assert len(lines) > 2
     assert max(map(abs, lines)) < 2.5  # px: in the middle of every chart
@@ -41,7 +41,9 @@ def test_pointing_at_the_track_moves_the_cursor(visit):
 def test_dragging_zooms_all_charts_and_escape_shows_all(visit):
     tab = visit("fuse").tab
     plot, box = over(tab, 0)
-    extent = "(i => { const u = document.querySelectorAll('.plot')[i].plot.u; return [u.scales.x.min, u.scales.x.max]; })"
+    extent = (
+        "(i => { const x = document.querySelectorAll('.plot')[i].plot.u.scales.x; return [x.min, x.max]; })"
+    )
     whole = tab.evaluate(f"{extent}(0)")
     tab.mouse.move(box["x"] + 0.2 * box["width"], box["y"] + 30)
     tab.mouse.down()

@@ -25,6 +25,8 @@ def test_it_fits_is_drawn_and_follows_the_systems_colours(visit, kind, width, sc
     assert tab.evaluate("document.documentElement.scrollWidth") <= width
     map_colours, _ = colours(tab.locator("#map").screenshot())
     assert map_colours > 20  # a blank canvas has one
+    tab.locator(".plot").first.scroll_into_view_if_needed()
+    tab.locator(".plot .u-over").first.wait_for()
     plot_colours, _ = colours(tab.locator(".plot").first.screenshot())
     assert plot_colours > 20
     _, brightness = colours(tab.screenshot())
