@@ -23,9 +23,11 @@ QUIET = (
     *("--disable-background-networking", "--disable-component-update", "--disable-sync"),
 )
 OPEN_OUTAGE = """() => { document.querySelector('#cards .head').click();
-    document.getElementById('outages').scrollIntoView(); scrollBy(0, 60); }"""
+    document.getElementById('outages').scrollIntoView(); }"""
+NUMBERED = """() => { document.querySelectorAll('[data-from]')[1].click();
+    document.getElementById('track').scrollIntoView({ behavior: 'instant' }); }"""
 SHOTS = (
-    ("fuse-1440", "fuse", 1440, 1000, "light", "scrollTo(0, 0)"),
+    ("fuse-1440", "fuse", 1440, 1300, "light", NUMBERED),
     ("fuse-400", "fuse", 400, 800, "dark", "scrollTo(0, 0)"),
     ("leaderboard-1440", "bench", 1440, 1000, "light", "scrollTo(0, 0)"),
     ("bench-1440", "bench", 1440, 1000, "light", OPEN_OUTAGE),

@@ -84,7 +84,8 @@ class Plot {
       return { stroke: () => colour(hue), paths: () => null, points: { show: true, size, width: 0, fill: () => colour(hue, spec.t.length > 1200 ? 0.6 : 0.85) } };
     }
     if (this.area(k)) return { width: 0, stroke: () => colour(hue), fill: () => colour(hue, spec.area === k ? 0.17 : 0.1), points: { show: false } };
-    return { stroke: () => colour(hue), width: s.width || 1.5, dash: s.dash || LINES[k % LINES.length], points: { show: false } };
+    const paths = spec.wrap ? { paths: wrappedPath } : {};
+    return { ...paths, stroke: () => colour(hue), width: s.width || 1.5, dash: s.dash || LINES[k % LINES.length], points: { show: false } };
   }
   range(low, high) {
     const { spec } = this;
@@ -114,8 +115,9 @@ class Plot {
     e.preventDefault();
   }
 
-  // Put the cursor where the page's time is.
-  follow() {
+  // Put the cursor where the page's time is, once uPlot has taken over a range that was just set.
+  follow() { queueMicrotask(() => this.place()); }
+  place() {
     const { u, spec, clock } = this, [a, b] = clock.range();
     const x = clock.get(), inside = x !== null && x >= a - 1e-6 && x <= b + 1e-6;
     if (u) u.setCursor({ left: inside ? u.valToPos(x, "x") : -10, top: inside ? 1 : -10 }, false);

@@ -20,6 +20,18 @@ function chartRows(spec) {
   return { rows: out, edges };
 }
 
+// Every point joined but across a lift: uPlot's own path draws one line through all that share a pixel.
+function wrappedPath(u, series, first, last) {
+  const stroke = new Path2D(), [t] = u.data, y = u.data[series];
+  let pen = false;
+  for (let i = first; i <= last; i++) {
+    if (y[i] === null) { pen = false; continue; }
+    stroke[pen ? "lineTo" : "moveTo"](u.valToPos(t[i], "x", true), u.valToPos(y[i], "y", true));
+    pen = true;
+  }
+  return { stroke, fill: null, clip: null, band: null, gaps: null, flags: 0 };
+}
+
 // Triangles at the edge of the frame for dots that lie beyond it.
 function arrowsBeyond(u, spec) {
   const { ctx } = u, { left, top, width, height } = u.bbox, ratio = devicePixelRatio || 1;
