@@ -112,5 +112,5 @@ def test_decisions_biases_and_checks_are_told(visit):
     assert "clock offset, position" in tab.inner_text("#details").lower()
     tab.select_option("[data-choice=system]", "2")
     assert "Gyro bias, forward" in tab.inner_text("#details")
-    assert "passed, 140 samples" in tab.inner_text("#prefix")
+    assert "held in 28 outages" in tab.inner_text("#prefix")
     assert "before motion + 30 s" in tab.inner_text("#apart")

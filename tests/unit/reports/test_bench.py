@@ -82,7 +82,7 @@ def test_curves_are_thinned_where_there_are_many(bench_folder, monkeypatch):
     data = bench_payload(read_bench(bench_folder))
     assert data["ages"]["most"] == 12
     assert max(n for c in data["outages"] for _, n in c["curves"].values()) == 12
-    first, n = next(c for c in data["outages"] if c["length"] == 60.0)["curves"][0]
+    first, n = next(c for c in data["outages"] if c["group"] == "60 s")["curves"][0]
     age = packing.halves(data["ages"]["age"])[first : first + n]
     assert age[0] == 0.0
     assert age[-1] == pytest.approx(59.0)  # the last epoch of an outage of 60 s
@@ -90,7 +90,7 @@ def test_curves_are_thinned_where_there_are_many(bench_folder, monkeypatch):
 
 
 def test_a_systems_track_lies_where_its_errors_put_it(data):
-    card = next(c for c in data["outages"] if c["length"] == 60.0)
+    card = next(c for c in data["outages"] if c["group"] == "60 s")
     x, y, t = (packing.times(data["tracks"][name]) for name in ("x", "y", "t"))
     truth = data["tracks"]["truth"][card["r"]]
     first, n = card["tracks"][0]
@@ -172,7 +172,7 @@ def test_figures_for_papers(bench_folder, tmp_path, suffix, magic):
     assert {path.stem for path in written} == {
         *("track-kestrel-avenue", "track-harbour-loop"),
         *(f"leaderboard-{p}" for p in ("passes", "isolated")),
-        *(f"ages-{p}-{n}s" for p in ("passes", "isolated") for n in (10, 60)),
+        *(f"ages-{p}-{n}-s" for p in ("passes", "isolated") for n in (10, 60)),
     }
     assert all(path.read_bytes().startswith(magic) for path in written)
     assert all(path.parent == copy / "figures" for path in written)

@@ -7,19 +7,17 @@ from collections import Counter
 from typing import Any
 
 from gapless.errors import ConfigError
-from gapless.reports.bench.folder import Bench, number_or_none
+from gapless.reports.bench.folder import POOLED, Bench, number_or_none
 from gapless.reports.numbers import known
 from gapless.reports.quantities import channel, state
 from gapless.reports.summary import decision_of, decision_value
-
-_POOLED = ("", "all", "pooled")
 
 
 def _recording(bench: Bench, name: str) -> int | None:
     """Index of a recording; -1 where a row is of all of them, None where the bench does not know it."""
     if name in bench.recordings:
         return bench.recordings.index(name)
-    return -1 if name in _POOLED else None
+    return -1 if name == POOLED else None
 
 
 def rows_of(bench: Bench, table: dict[str, Any]) -> list[dict[str, Any]]:
@@ -33,17 +31,17 @@ def rows_of(bench: Bench, table: dict[str, Any]) -> list[dict[str, Any]]:
     Returns
     -------
     list of dict
-        JSON-able: `r` (-1 where pooled), `protocol`, `length`, `system`, `base` as indices and names, numbers
+        JSON-able: `r` (-1 where pooled), `protocol`, `group`, `system`, `base` as indices and names, numbers
         under the names of the file's columns.
     """
     systems, protocols, found = bench.systems, list(bench.facts["protocols"]), []
-    numbers = [name for name in table if name not in ("recording", "protocol", "system", "base")]
+    numbers = [name for name in table if name not in ("recording", "protocol", "group", "system", "base")]
     for k in range(len(table["system"])):
         r = _recording(bench, table["recording"][k])
         if r is None or table["system"][k] not in systems or table["protocol"][k] not in protocols:
             continue
         row: dict[str, Any] = {"r": r, "protocol": protocols.index(table["protocol"][k])}
-        row["system"] = systems.index(table["system"][k])
+        row |= {"group": table["group"][k], "system": systems.index(table["system"][k])}
         if "base" in table:
             row["base"] = table["base"][k]
         found.append(row | {name: number_or_none(float(table[name][k])) for name in numbers})
@@ -161,15 +159,10 @@ def prefix_checks(bench: Bench) -> list[dict[str, Any]]:
     Returns
     -------
     list of dict
-        `system`, `recording`, `passed` and, where it is known, `samples`.
+        `system`, `recording`, `said`.
     """
-    told = bench.facts.get("prefix") or []
     return [
-        {
-            "system": str(one["system"]),
-            "recording": str(one["recording"]),
-            "passed": bool(one["passed"]),
-            "samples": one.get("samples"),
-        }
-        for one in told
+        {"system": str(system), "recording": str(recording), "said": str(said)}
+        for system, by_recording in (bench.facts.get("prefix") or {}).items()
+        for recording, said in by_recording.items()
     ]

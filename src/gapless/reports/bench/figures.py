@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterator
 from functools import partial
 from pathlib import Path
@@ -13,7 +14,7 @@ from gapless.errors import MissingExtraError
 from gapless.io.writers.atomic import atomic
 from gapless.recording import Array
 from gapless.reports.background import east_north
-from gapless.reports.bench.folder import Bench, groups, read_bench
+from gapless.reports.bench.folder import POOLED, Bench, groups, pools_of, read_bench
 from gapless.units import DEG
 
 _COLOURS: Final = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#4b545c")
@@ -55,7 +56,7 @@ def write_figures(folder: Path, suffix: str) -> list[Path]:
         axes.spines[["top", "right"]].set_visible(False)
         axes.tick_params(labelsize=8)
         draw(axes)
-        path = folder / "figures" / f"{name}.{suffix}"
+        path = folder / "figures" / f"{re.sub('[^a-zA-Z0-9._-]+', '-', name)}.{suffix}"
         with atomic(path) as temporary:
             figure.savefig(temporary, format=suffix, dpi=_DPI)
         written.append(path)
@@ -77,8 +78,8 @@ def _plans(bench: Bench) -> Iterator[tuple[str, Callable[[Any], None]]]:
         yield f"track-{recording}", partial(_track, bench, recording)
     for protocol in bench.facts["protocols"]:
         yield f"leaderboard-{protocol}", partial(_leaderboard, bench, protocol)
-        for length in np.unique(bench.outages["length"]):
-            yield f"ages-{protocol}-{length:g}s", partial(_ages, bench, protocol, length)
+        for group in pools_of(bench.outages):
+            yield f"ages-{protocol}-{group}", partial(_ages, bench, protocol, group)
 
 
 def _style(k: int) -> dict[str, Any]:
@@ -117,11 +118,13 @@ def _track(bench: Bench, recording: str, axes: Any) -> None:
 def _leaderboard(bench: Bench, protocol: str, axes: Any) -> None:
     """Median and 95th percentile of every system by length, with their intervals."""
     table = bench.leaderboard
-    pooled = (table["recording"] == "") & (table["protocol"] == protocol)
-    lengths = np.unique(table["length"][pooled])
+    pooled = (table["recording"] == POOLED) & (table["protocol"] == protocol)
+    names = [name for name in pools_of(table) if (table["group"][pooled] == name).any()]
     for k, system in enumerate(bench.systems):
         rows = np.flatnonzero(pooled & (table["system"] == system))
-        at = np.searchsorted(lengths, table["length"][rows]) + 0.16 * (k - 0.5 * (len(bench.systems) - 1))
+        at = np.array([names.index(name) for name in table["group"][rows]], float) + 0.16 * (
+            k - 0.5 * (len(bench.systems) - 1)
+        )
         for key, face in (("median", None), ("p95", "white")):
             value = table[key][rows]
             reach = np.abs(np.vstack([table[f"{key}_lo"][rows], table[f"{key}_hi"][rows]]) - value)
@@ -137,15 +140,15 @@ def _leaderboard(bench: Bench, protocol: str, axes: Any) -> None:
                 label=system if face is None else None,
             )
     axes.set_yscale("log")
-    axes.set_xticks(range(len(lengths)), [f"{v:g}" for v in lengths])
-    _finish(axes, "length of the outage [s]", "largest horizontal error [m]", "filled: median, open: P95")
+    axes.set_xticks(range(len(names)), names)
+    _finish(axes, "outages", "largest horizontal error [m]", "filled: median, open: P95")
 
 
-def _ages(bench: Bench, protocol: str, length: float, axes: Any) -> None:
+def _ages(bench: Bench, protocol: str, group: str, axes: Any) -> None:
     """Median horizontal error against age, and thinly the 95th percentile."""
     table = bench.ages
-    counted = _counted(bench, protocol, length)
-    grid = np.linspace(0.0, length, _AGES)
+    counted = _counted(bench, protocol, group)
+    grid = np.linspace(0.0, max(counted.values(), default=0.0), _AGES)
     curves: dict[str, list[Array]] = {name: [] for name in bench.systems}
     for key, rows in groups(table, ("recording", "protocol", "scenario", "start", "system")):
         if key[:4] in counted and key[4] in curves:
@@ -164,11 +167,12 @@ def _ages(bench: Bench, protocol: str, length: float, axes: Any) -> None:
     _finish(axes, "age of the outage [s]", "horizontal error [m]", "thick: median, thin: P95")
 
 
-def _counted(bench: Bench, protocol: str, length: float) -> set[tuple[Any, ...]]:
-    """Outages of a length that no label sets apart."""
+def _counted(bench: Bench, protocol: str, group: str) -> dict[tuple[Any, ...], float]:
+    """Outages of a pool that no label sets apart, and how long each lasts [s]."""
     table = bench.outages
     rows = np.flatnonzero(
-        (table["protocol"] == protocol) & (table["length"] == length) & (table["labels"] == "")
+        (table["protocol"] == protocol) & (table["group"] == group) & (table["labels"] == "")
     )
     columns = [table[name][rows] for name in ("recording", "protocol", "scenario", "start")]
-    return set(zip(*columns, strict=True))
+    lasting = table["end"][rows] - table["start"][rows]
+    return dict(zip(zip(*columns, strict=True), lasting.tolist(), strict=True))

@@ -12,18 +12,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gapless.errors import ConfigError
-from gapless.recording import Array
 
 Columns = dict[str, Any]
 """Arrays of one length by column name: float64, or str as objects."""
 Group = NDArray[np.int64]
 """Rows of a table."""
 QUANTITIES: Final = ("horizontal", "vertical", "along", "cross", "velocity", "heading_deg")
+POOLED: Final = "pooled"
+"""Stands for all recordings together."""
 _RUN = ("recording", "system", "protocol", "scenario")
 _STATISTICS = tuple(f"{s}{e}" for s in ("median", "rms", "p95", "worst") for e in ("", "_lo", "_hi"))
 _WANTED: Final = {
     "outages": (
-        *(*_RUN, "length", "shift", "start", "end", "labels", "truth", "distance", "percent"),
+        *(*_RUN, "group", "length", "shift", "start", "end", "labels", "truth", "distance", "percent"),
         *(f"{q}_{s}" for q in QUANTITIES for s in ("max", "rmse", "end")),
         *("coverage_50", "coverage_95", "coverage_99", "nees", "inside_95_end"),
     ),
@@ -34,16 +35,16 @@ _WANTED: Final = {
     ),
     "runs": (*_RUN, "decisions", "biases", "innovations", "rmse_open", "coverage_open_95"),
     "leaderboard": (
-        *("recording", "protocol", "length", "system", "n", *_STATISTICS),
+        *("recording", "protocol", "group", "length", "system", "n", *_STATISTICS),
         *("coverage_50", "coverage_95", "coverage_99", "left_out"),
     ),
     "pairs": (
-        *("recording", "protocol", "length", "system", "base", "n", "median_ratio", "mean_ratio"),
-        *("mean_ratio_lo", "mean_ratio_hi", "share_better", "worst_ratio", "p", "p_corrected"),
+        *("recording", "protocol", "group", "system", "base", "n", "median_ratio", "geometric"),
+        *("geometric_lo", "geometric_hi", "better", "worst_ratio", "p", "p_corrected"),
     ),
 }
 """Columns that the page needs of each Parquet file."""
-_FACTS = ("gapless", "recordings", "systems", "protocols", "lengths")
+_FACTS = ("gapless", "recordings", "systems", "protocols")
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,7 +57,7 @@ class Bench:
         `bench.json`.
     outages, ages, tracks, runs, leaderboard, pairs : dict of str to ndarray
         Columns of the Parquet files, units as in their names; a pooled row of `leaderboard` or
-        `pairs` has the recording "".
+        `pairs` has the recording `POOLED`.
     tables : str
         `tables.txt`; "" where it is not there.
     """
@@ -213,15 +214,17 @@ def number_or_none(value: float, digits: int = 4) -> float | None:
     return float(f"{value:.{digits}g}") if np.isfinite(value) else None
 
 
-def lengths_of(values: Array) -> list[float]:
-    """Each length once, in order.
+def pools_of(columns: Columns) -> list[str]:
+    """Groups of outages that are one pool: those of a length, or of a plan; the shorter ones first.
 
     Parameters
     ----------
-    values : ndarray, shape (n,)
+    columns : dict of str to ndarray
+        Of `outages.parquet`.
 
     Returns
     -------
-    list of float
+    list of str
     """
-    return [float(v) for v in np.unique(values[np.isfinite(values)])]
+    lengths = dict(zip(columns["group"], columns["length"], strict=True))
+    return sorted(lengths, key=lambda name: (not np.isfinite(lengths[name]), lengths[name], name))

@@ -31,7 +31,7 @@ def outage_cards(bench: Bench) -> tuple[list[dict[str, Any]], dict[tuple[Any, ..
     Returns
     -------
     cards : list of dict
-        JSON-able: `r`, `p` (indices), `scenario`, `length`, `shift`, `start`, `end`, `labels`, `truth`,
+        JSON-able: `r`, `p` (indices), `scenario`, `group`, `start`, `end`, `labels`, `truth`,
         `distance`, and `scores`: by index of the system the numbers of `SCORES`.
     places : dict
         Index of the card by (recording, protocol, scenario, start).
@@ -52,8 +52,7 @@ def outage_cards(bench: Bench) -> tuple[list[dict[str, Any]], dict[tuple[Any, ..
                 "r": r,
                 "p": p,
                 "scenario": key[2],
-                "length": float(table["length"][first]),
-                "shift": number_or_none(table["shift"][first]),
+                "group": str(table["group"][first]),
                 "start": round(float(key[3]), 3),
                 "end": round(float(table["end"][first]), 3),
                 "labels": [word for word in str(table["labels"][first]).split("; ") if word],

@@ -10,10 +10,10 @@ from typing import Any
 from gapless.io.writers.atomic import atomic
 from gapless.reports.background import Feature
 from gapless.reports.bench import boards
-from gapless.reports.bench.folder import Bench, lengths_of, read_bench
+from gapless.reports.bench.folder import Bench, pools_of, read_bench
 from gapless.reports.bench.outages import CURVES, SCORES, curves, outage_cards
 from gapless.reports.bench.tracks import tracks
-from gapless.reports.numbers import compact, distance, duration
+from gapless.reports.numbers import distance, duration, known, plain
 from gapless.reports.page import Content, Tile, fill, render
 
 _SCRIPTS = ("state", "dots", "leaderboard", "pairs", "ages", "track", "cards", "details", "main")
@@ -93,12 +93,10 @@ def bench_payload(bench: Bench, background: Sequence[Feature] = ()) -> dict[str,
     told, parts = boards.runs(bench)
     facts = bench.facts
     return {
-        "recordings": facts["recordings"],
+        "recordings": plain(facts["recordings"]),
         "systems": facts["systems"],
         "protocols": facts["protocols"],
-        "lengths": lengths_of(bench.outages["length"]),
-        "arguments": [str(word) for word in facts.get("arguments") or []],
-        "wall_time": facts.get("wall_time"),
+        "groups": pools_of(bench.outages),
         "board": boards.rows_of(bench, bench.leaderboard),
         "pairs": boards.rows_of(bench, bench.pairs),
         "scores": SCORES,
@@ -116,28 +114,26 @@ def bench_payload(bench: Bench, background: Sequence[Feature] = ()) -> dict[str,
 
 
 def _lead(bench: Bench, data: dict[str, Any]) -> str:
-    lengths = ", ".join(compact(v) for v in data["lengths"])
+    pools = "; ".join(data["groups"])
     systems = ", ".join(f"\u201c{name}\u201d" for name in bench.systems)
-    return f"{systems} through GNSS outages of {lengths} s, each scored against the truth that was withheld."
+    return f"{systems} through the same GNSS outages ({pools}), scored against the truth that was withheld."
 
 
 def _tiles(bench: Bench, data: dict[str, Any]) -> list[Tile]:
     facts, cards = bench.facts, data["outages"]
-    hours = sum(float(one["duration"]) for one in facts["recordings"])
-    moved = sum(float(one["distance"]) for one in facts["recordings"])
+    hours = sum(known(one["duration"]) for one in facts["recordings"])
+    moved = sum(known(one["distance"]) for one in facts["recordings"])
     apart = sum(bool(card["labels"]) for card in cards)
-    failed = [one for one in data["prefix"] if not one["passed"]]
-    checks = len(data["prefix"])
+    checked = sum(one["said"].startswith("held") for one in data["prefix"])
     found: list[Tile] = [
         ("Recordings", str(len(bench.recordings)), f"{duration(hours)}, {distance(moved)}"),
         ("Systems", str(len(bench.systems)), ", ".join(bench.systems)),
         ("Outages", str(len(cards)), " and ".join(map(str, facts["protocols"]))),
         ("Set apart", str(apart), "labelled, counted, not in the figures"),
     ]
-    if checks:
-        value = f"{checks - len(failed)} of {checks}"
-        found.append(("Prefix checks", value, "passed: no look into the future" if not failed else "passed"))
-    if facts.get("wall_time") is not None:
+    if checked:
+        found.append(("Prefix checks", str(checked), "held: no look into the future"))
+    if facts.get("seconds") is not None:
         runs = f"{len(data['runs'])} runs" if data["runs"] else ""
-        found.append(("Wall time", duration(float(facts["wall_time"])), runs))
+        found.append(("Wall time", duration(float(facts["seconds"])), runs))
     return found

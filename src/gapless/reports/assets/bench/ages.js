@@ -38,14 +38,14 @@ function errorRange(series, top) {
 let agePlots = [];
 function drawAges() {
   for (const p of agePlots) p.destroy();
-  const cards = data.outages.filter(c => chosen(c) && !c.labels.length), length = state.length;
+  const cards = data.outages.filter(c => chosen(c) && !c.labels.length), length = Math.max(1, ...cards.map(c => c.end - c.start));
   const grid = Array.from({ length: AGES + 1 }, (_, i) => length * i / AGES), shown = visible();
   const found = (name, q) => shown.map(k => quantiles(cards, k, name, grid, q));
   const middle = found("horizontal", 0.5), high = found("horizontal", 0.95), bound = found("bound", 0.5);
   const clock = ageClock(() => state.open === null ? null : data.outages[state.open].start, length);
   const spec = (title, note, series, top) => ({ title, unit: "m", note, t: grid, series, range: errorRange(series, top), log: state.log, gap: length, over: "the age of the outage" });
   agePlots = [
-    new Plot(byId("ages-charts"), spec("Median horizontal error", `Over ${cards.length} outages of ${length} s.`, shown.map((k, i) => ({ ...lineOf(k), y: middle[i] })), topOf(...middle)), clock),
+    new Plot(byId("ages-charts"), spec("Median horizontal error", `Over ${cards.length} outages: ${state.group}.`, shown.map((k, i) => ({ ...lineOf(k), y: middle[i] })), topOf(...middle)), clock),
     new Plot(byId("ages-charts"), spec("95 % of outages lie below", "Shaded: the median bound that each system states for 95 %. An honest system's line runs along the edge of its own shade.",
       [...shown.map((k, i) => ({ ...lineOf(k), y: high[i] })), ...shown.map((k, i) => ({ name: "", hue: look(k).hue, area: true, silent: true, y: bound[i] }))], topOf(...high, ...bound)), clock),
   ];

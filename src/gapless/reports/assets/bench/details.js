@@ -16,7 +16,7 @@ function drawDetails() {
   if (state.r >= 0) inside.r = state.r;
   const here = data.runs.filter(run => run.r === inside.r && run.p === state.p && run.system === inside.system);
   const scenarios = here.map(run => run.scenario);
-  if (!scenarios.includes(inside.scenario)) inside.scenario = scenarios.find(s => s.includes(`length=${state.length},`)) || scenarios[0] || "";
+  if (!scenarios.includes(inside.scenario)) inside.scenario = scenarios.find(s => data.outages.some(c => c.scenario === s && c.group === state.group)) || scenarios[0] || "";
   byId("details-choice").replaceChildren(
     ...(data.recordings.length > 1 && state.r < 0 ? [chooser("Recording", "r", data.recordings.map((r, k) => [k, r.name]))] : []),
     chooser("System", "system", data.systems.map((s, k) => [k, s.name])),
@@ -55,9 +55,9 @@ function drawPrefix() {
   const cell = (r, s) => {
     const one = data.prefix.find(o => o.recording === r && o.system === s);
     if (!one) return "–";
-    return element("span", (one.passed ? "passed" : "reads the future") + (one.samples ? `, ${one.samples} samples` : ""), one.passed ? "passed" : "failed");
+    return element("span", one.said, one.said.startsWith("held") ? "passed" : "quiet");
   };
   host.replaceChildren(sheet("Prefix check", ["Recording", ...systems], names.map(r => [r, ...systems.map(s => cell(r, s))])),
-    element("p", "With all that comes later spoilt, the same rows must come out, bit for bit. Systems that look ahead are not asked.", "quiet"));
+    element("p", "With all that comes later spoilt, the same rows must come out, bit for bit. A causal system that fails ends the bench; one that says that it looks ahead is not asked.", "quiet"));
 }
 onState.push(drawDetails);

@@ -1,5 +1,5 @@
 // Systems ranked, with intervals; then the median of each recording.
-const boardRows = r => data.board.filter(b => b.r === r && b.protocol === state.p && b.length === state.length && state.systems.has(b.system))
+const boardRows = r => data.board.filter(b => b.r === r && b.protocol === state.p && b.group === state.group && state.systems.has(b.system))
   .sort((a, b) => a.median - b.median);
 
 function drawBoard() {

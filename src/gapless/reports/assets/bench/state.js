@@ -1,21 +1,21 @@
 // What the reader chose: recording, protocol, length, systems, and the outage that is open.
 const state = {
   r: data.recordings.length === 1 ? 0 : -1, p: 0,
-  length: data.lengths.includes(60) ? 60 : data.lengths[data.lengths.length >> 1],
+  group: data.groups.includes("60 s") ? "60 s" : data.groups[data.groups.length >> 1],
   systems: new Set(data.systems.map((_, k) => k)), open: null, log: false,
 };
 // A linear axis shows nothing of systems that differ tenfold.
-const medians = data.board.filter(b => b.r < 0 && b.length === state.length && b.median > 0).map(b => b.median);
+const medians = data.board.filter(b => b.r < 0 && b.group === state.group && b.median > 0).map(b => b.median);
 state.log = medians.length > 1 && Math.max(...medians) > 8 * Math.min(...medians);
 const onState = [];
 function change(part) {
-  const filtered = ["r", "p", "length"].some(key => key in part && part[key] !== state[key]);
+  const filtered = ["r", "p", "group"].some(key => key in part && part[key] !== state[key]);
   Object.assign(state, part);
   if (filtered && !("open" in part)) state.open = null;
   for (const tell of onState) tell(filtered);
 }
 const visible = () => data.systems.map((_, k) => k).filter(k => state.systems.has(k));
-const chosen = card => (state.r < 0 || card.r === state.r) && card.p === state.p && card.length === state.length;
+const chosen = card => (state.r < 0 || card.r === state.r) && card.p === state.p && card.group === state.group;
 const SCORE = Object.fromEntries(data.scores.map((name, k) => [name, k]));
 const scoreOf = (card, k, name) => card.scores[k] ? card.scores[k][SCORE[name]] : null;
 const ahead = k => !data.systems[k].causal;
@@ -65,7 +65,7 @@ function systemToggles() {
 }
 byId("filters").append(...[
   recordingChoice(),
-  segmented("Outage", "length", data.lengths.map(v => [v, `${v} s`])),
+  segmented("Outages", "group", data.groups.map(name => [name, name])),
   segmented("Protocol", "p", data.protocols.map((name, k) => [k, name])),
   systemToggles(),
 ].filter(Boolean));
