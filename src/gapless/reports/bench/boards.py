@@ -8,7 +8,7 @@ from typing import Any
 
 from gapless.errors import ConfigError
 from gapless.reports.bench.folder import POOLED, Bench, number_or_none
-from gapless.reports.numbers import known
+from gapless.reports.numbers import known, measured
 from gapless.reports.quantities import channel, state
 from gapless.reports.summary import decision_of, decision_value
 
@@ -107,15 +107,12 @@ def _decisions(entries: Any) -> list[list[str]]:
     ]
 
 
-def _biases(blocks: Any) -> list[list[Any]]:
-    """Title, unit, and name, value, sd of each axis."""
+def _biases(blocks: Any) -> list[list[str]]:
+    """State with its axis, unit, value with its standard deviation."""
     return [
-        [
-            state(name, len(one["value"])).label,
-            one["unit"],
-            *zip(one["axes"], one["value"], one["sd"], strict=True),
-        ]
+        [f"{state(name, len(one['value'])).label}, {axis}", one["unit"], measured(known(value), sd)]
         for name, one in (blocks or {}).items()
+        for axis, value, sd in zip(one["axes"], one["value"], one["sd"], strict=True)
     ]
 
 

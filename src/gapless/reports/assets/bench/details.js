@@ -8,7 +8,6 @@ function chooser(label, key, options) {
   box.append(select);
   return box;
 }
-const measuredText = (v, sd) => v === null ? "–" : sd ? `${short(v)} ± ${short(sd)}` : short(v);
 
 function drawDetails() {
   byId("details").hidden = !data.runs.length;
@@ -29,7 +28,7 @@ function drawDetails() {
   if (innovations.length) add("Innovations", sheet("Innovation statistics", ["Channel", ["Count", "n"], ["Mean NIS / dof", "n"], ["Median NIS", "n"], ["In 95 %", "n"], ["Inflated", "n"], ["Rejected", "n"]],
     innovations.map(([title, n, mean, median, share, inflated, rejected]) => [title, ...[String(n), short(mean), short(median), percentText(share), String(inflated), String(rejected)].map(v => [v, "n"])]), "stack"));
   if (biases.length) add("Biases at the end", sheet("Biases at the end", ["State", "Unit", ["Value", "n"]],
-    biases.flatMap(([title, unit, ...axes]) => axes.map(([axis, v, sd]) => [`${title}, ${axis}`, unit || "–", [measuredText(v, sd), "n"]]))));
+    biases.map(([title, unit, value]) => [title, unit || "–", [value, "n"]])));
   if (decisions.length) add("Decisions", sheet("Decisions and their evidence", ["Decision", "Value", "Source", "Evidence"],
     decisions.map(([name, value, source, evidence]) => [name, [value, "value"], [element("span", source, `source ${source}`), "short"], evidence]), "decisions"));
   byId("details-body").replaceChildren(...parts);
