@@ -25,7 +25,8 @@ test: $(VENV)/.dev browser  ## lint, types, floors, tests
 	$(BIN)/pytest -n 2
 
 browser:  ## a Chromium for the tests of pages: found, or installed where that is allowed; without one they skip
-	@command -v chromium chromium-browser google-chrome chrome >/dev/null || test -n "$$GAPLESS_CHROMIUM" || \
+	@for name in "$$GAPLESS_CHROMIUM" chromium chromium-browser google-chrome chrome; do \
+	command -v "$$name" >/dev/null && exit 0; done; \
 	{ test "$$(id -u)" = 0 && command -v apt-get >/dev/null && echo "installing chromium" && apt-get -qq update && \
 	DEBIAN_FRONTEND=noninteractive apt-get -qq install --no-install-recommends chromium fonts-liberation >/dev/null; } || \
 	echo "no Chromium was found, and none can be installed here: tests of pages are skipped"

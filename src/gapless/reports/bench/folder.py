@@ -151,7 +151,9 @@ def _array(column: Any) -> Any:
 
     kind = column.type
     if pa.types.is_dictionary(kind) or pa.types.is_string(kind) or pa.types.is_large_string(kind):
-        return np.array(["" if v is None else v for v in column.to_pylist()], dtype=object)
+        told = column.cast(pa.string()).fill_null("").dictionary_encode().combine_chunks()
+        words = np.array([*told.dictionary.to_pylist(), ""], dtype=object)
+        return words[told.indices.to_numpy()]
     return column.cast(pa.float64()).fill_null(np.nan).to_numpy()
 
 
@@ -172,12 +174,21 @@ def groups(columns: Columns, keys: tuple[str, ...]) -> Iterator[tuple[tuple[Any,
     """
     if not len(columns[keys[0]]):
         return
-    codes = [np.unique(columns[key], return_inverse=True)[1] for key in keys]
+    codes = [_codes(columns[key]) for key in keys]
     order = np.lexsort(codes[::-1])
     table = np.column_stack(codes)[order]
     cuts = np.flatnonzero((table[1:] != table[:-1]).any(axis=1)) + 1
     for rows in np.split(order, cuts):
         yield tuple(columns[key][rows[0]] for key in keys), rows
+
+
+def _codes(column: Any) -> Group:
+    """A number for each different value of a column; of words in the order in which they come."""
+    if column.dtype != object:
+        return np.asarray(np.unique(column, return_inverse=True)[1], np.int64)
+    import pyarrow as pa
+
+    return np.asarray(pa.array(column.tolist(), pa.string()).dictionary_encode().indices.to_numpy(), np.int64)
 
 
 def thinned(rows: Group, most: int) -> Group:
