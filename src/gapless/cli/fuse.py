@@ -49,6 +49,9 @@ def _formats(command: Callable[..., Any]) -> Callable[..., Any]:
     metavar="HZ",
     help="Rows of the solution per second.",
 )
+@click.option(
+    "--smooth", is_flag=True, help="Let what came later correct what came before: for post-processing."
+)
 @click.option("--vehicle", is_flag=True, help="Write the attitude of the car instead of the box's.")
 @_formats
 @click.option("--no-report", is_flag=True, help="Do not write report.html.")
@@ -59,7 +62,13 @@ def _formats(command: Callable[..., Any]) -> Callable[..., Any]:
     help="GeoJSON of lines and polygons, drawn faintly beneath the track of report.html.",
 )
 def fuse(
-    out: Path, rate: float, vehicle: bool, no_report: bool, background: Path | None, **rest: Any
+    out: Path,
+    rate: float,
+    smooth: bool,
+    vehicle: bool,
+    no_report: bool,
+    background: Path | None,
+    **rest: Any,
 ) -> None:
     """Fuse a RECORDING into a trajectory with honest uncertainties.
 
@@ -74,7 +83,7 @@ def fuse(
     check_folder(out)
     ground = _background(background, no_report)
     work = job(**rest)
-    solution, scores = _navigate(work, rate)
+    solution, scores = _navigate(work, rate, smooth)
     if vehicle:
         from gapless.systems.vehicle import vehicle_attitude
 
@@ -107,17 +116,23 @@ def _background(path: Path | None, no_report: bool) -> list[Feature]:
     return read_background(path)
 
 
-def _navigate(work: Job, rate: float) -> tuple[Solution, Scores | None]:
+def _navigate(work: Job, rate: float, smooth: bool) -> tuple[Solution, Scores | None]:
     """Solution, and scores where there is something to score it against."""
     from gapless.cli.progress import progress
     from gapless.errors import ConfigError
     from gapless.systems.fuse import fuse
+    from gapless.systems.smooth import smooth as smoothed
 
     most = work.recording.imu.rate
     if rate > most * 1.01:
         raise ConfigError(f"--rate {rate:g}: the IMU has {most:.4g} samples a second; ask for no more")
+    if smooth and work.causal:
+        raise ConfigError("--smooth looks back and --causal never ahead; give one of them")
     with progress("fusing", work.recording.duration) as tell:
-        solution = fuse(work.recording, work.system, work.outages, rate, work.causal, tell)
+        if smooth:
+            solution = smoothed(work.recording, work.system, work.outages, rate, tell)
+        else:
+            solution = fuse(work.recording, work.system, work.outages, rate, work.causal, tell)
     if work.recording.reference is None and not work.outages:
         return solution, None
 

@@ -15,6 +15,7 @@ from gapless.navigator import Navigator, Settings
 from gapless.recording import Recording
 from gapless.scenarios import Outage, withhold
 from gapless.solution import Decision, Solution
+from gapless.systems.adjust import graded
 from gapless.systems.build import settings, stamps
 from gapless.systems.decide import Decided, decide, static_decisions
 from gapless.systems.recipe import System
@@ -57,7 +58,7 @@ def fuse(
     AlignmentError
         If the vehicle never moved fast enough for a heading.
     """
-    system = System() if system is None else system
+    system = graded(System() if system is None else system, recording)
     outages = tuple(outages)
     open_sky = withhold_from(recording, outages)
     if causal:
@@ -66,7 +67,7 @@ def fuse(
         decided = _decide_before(open_sky, system, outages)
         navigator = Navigator(_settings(open_sky, system, decided, rate))
         _fold(navigator, events(open_sky, stamps(system, decided.offsets)), recording.start, progress)
-    return _collect(recording, system, outages, navigator, decided)
+    return collect(recording, system, outages, navigator, decided)
 
 
 def _decide_before(open_sky: Recording, system: System, outages: tuple[Outage, ...]) -> Decided:
@@ -133,13 +134,32 @@ def _on_the_way(
     return navigator, decided
 
 
-def _collect(
+def collect(
     recording: Recording,
     system: System,
     outages: tuple[Outage, ...],
     navigator: Navigator,
     decided: Decided,
 ) -> Solution:
+    """What a navigator that has come to the end found.
+
+    Parameters
+    ----------
+    recording : Recording
+    system : System
+    outages : tuple of Outage
+    navigator : Navigator
+    decided : Decided
+
+    Returns
+    -------
+    Solution
+
+    Raises
+    ------
+    AlignmentError
+        If there was never a heading to start from.
+    """
     journal = navigator.journal
     if not journal.times:
         raise AlignmentError(
