@@ -71,7 +71,7 @@ def render(content: Content) -> str:
         tiles=_tiles(content.tiles),
         body=content.body,
         style=_style(content.styles),
-        vendor=asset("vendor/uPlot.iife.min.js"),
+        vendor=f"/*! uPlot\n{asset('vendor/uPlot.LICENSE')}*/\n{asset('vendor/uPlot.iife.min.js')}",
         script="\n".join(map(asset, scripts)),
         data=embedded(content.data),
         version=escape(__version__),

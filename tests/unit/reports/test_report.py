@@ -70,6 +70,7 @@ def test_one_file_that_loads_nothing(drive, html, tmp_path):
     write_report(solution, recording, scores, path)
     assert path.read_text(encoding="utf-8") == html
     loads_nothing(html)
+    assert asset("vendor/uPlot.LICENSE") in html  # a copy of the library goes with its licence
 
 
 def test_it_is_sound_and_semantic(html):
@@ -133,6 +134,7 @@ def test_data_is_decimated_to_what_a_screen_shows(drive, html):
             assert len(packing.values(series["y"])) == len(times)
             assert "band" not in series or len(packing.values(series["band"])) == len(times)
     assert len(data["track"]["t"]) <= 4000
+    assert f"{len(drive[1].trajectory)} rows in about {POINTS} points" in data["embedded"]
     titles = [chart["title"] for chart in data["charts"]]
     assert titles[0] == "Horizontal error"
     assert {"Speed", "Heading", "Gyro bias", "Odometer", "Zero angular rate"} <= set(titles)

@@ -2,7 +2,7 @@
 const benchTrack = new BenchTrack(byId("map"));
 byId("embedded").textContent = data.embedded;
 onState.push(() => {
-  const { card } = benchTrack, { truth } = benchTrack;
+  const { truth } = benchTrack;
   benchTrack.turn();
   const now = benchTrack.card;
   const span = now ? [now.start, now.end] : benchTrack.truth.t.length ? [benchTrack.truth.t[0], benchTrack.truth.t[benchTrack.truth.t.length - 1]] : [0, 1];
