@@ -42,12 +42,16 @@ def chromium():
 
 @pytest.fixture(scope="session")
 def pages(tmp_path_factory):
-    """A fuse page and a bench page, by kind."""
+    """A fuse page, a bench page, and one of a bench of one recording, by kind."""
     folder = tmp_path_factory.mktemp("pages")
     recording, solution = fake_drive.make()
     write_report(solution, recording, score(solution, recording), folder / "fuse.html")
     bench = fake_bench.make(folder / "bench", lengths=(10, 60), duration=900.0)
-    return {"fuse": folder / "fuse.html", "bench": write_bench_report(bench)}
+    one = fake_bench.make(
+        folder / "one", recordings=("kestrel-avenue",), protocols=("passes",), shifts=(0,), duration=900.0
+    )
+    found = {"bench": write_bench_report(bench), "one": write_bench_report(one)}
+    return found | {"fuse": folder / "fuse.html"}
 
 
 class Visit:

@@ -11,7 +11,7 @@ def test_outages_are_sorted_worst_first_and_by_time(visit):
     assert len(worst) > 5
     assert worst == sorted(worst, reverse=True)
     tab.select_option("#sort", "-2")
-    tab.select_option("#recording", "0")
+    tab.select_option("[data-filter=r]", "1")
     starts = [float(text.split("\u2013")[0]) for text in tab.locator("#cards .title b").all_inner_texts()]
     assert starts == sorted(starts)
 
@@ -81,7 +81,7 @@ def test_length_protocol_and_recording_choose_what_is_shown(visit):
     tab.get_by_role("button", name="10 s", exact=True).click()
     assert tab.inner_text("#board-table tbody tr:last-child .measure b >> nth=0") != median
     tab.get_by_role("button", name="isolated").click()
-    tab.select_option("#recording", "1")
+    tab.select_option("[data-filter=r]", "2")
     assert "kestrel-avenue" not in tab.inner_text("#cards")
     assert tab.inner_text("#key").startswith("harbour-loop")
 
@@ -114,3 +114,11 @@ def test_decisions_biases_and_checks_are_told(visit):
     assert "Gyro bias, forward" in tab.inner_text("#details")
     assert "held in 28 outages" in tab.inner_text("#prefix")
     assert "before motion + 30 s" in tab.inner_text("#apart")
+
+
+def test_a_bench_of_one_recording_has_its_leaderboard_too(visit):
+    tab = visit("one").tab
+    assert tab.locator("#board-table tbody tr").count() == 3
+    assert tab.locator("#pairs-table tbody tr").count() == 2
+    assert cards(tab).count() == 4  # every 180 s from 240 s, in 900 s
+    assert tab.locator("[data-filter=r]").count() == 0

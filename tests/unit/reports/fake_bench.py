@@ -231,7 +231,7 @@ def _statistics(x):
 
 def _leaderboard(outages, recordings, systems, protocols, lengths):
     rng, rows = np.random.default_rng(3), []
-    for recording in ("pooled", *recordings):
+    for recording in ("pooled", *(recordings if len(recordings) > 1 else ())):
         for protocol in protocols:
             for length in lengths:
                 for name in systems:

@@ -16,6 +16,8 @@ from gapless.reports.bench.tracks import tracks
 from gapless.reports.numbers import distance, duration, known, plain
 from gapless.reports.page import Content, Tile, fill, render
 
+_KINDS = 5
+"""Kinds of outages that the lead names one by one."""
 _SCRIPTS = ("state", "dots", "leaderboard", "pairs", "ages", "track", "cards", "details", "main")
 
 
@@ -114,7 +116,8 @@ def bench_payload(bench: Bench, background: Sequence[Feature] = ()) -> dict[str,
 
 
 def _lead(bench: Bench, data: dict[str, Any]) -> str:
-    pools = "; ".join(data["groups"])
+    kinds = data["groups"]
+    pools = "; ".join(kinds) if len(kinds) <= _KINDS else f"{len(kinds)} kinds"
     systems = ", ".join(f"\u201c{name}\u201d" for name in bench.systems)
     return f"{systems} through the same GNSS outages ({pools}), scored against the truth that was withheld."
 

@@ -1,10 +1,11 @@
 // Outages one by one, the worst first; one opens at a time.
 const PAGE = 25;
-let listed = PAGE, openPlots = [];
+const spanText = card => `${+card.start.toFixed(1)}–${+card.end.toFixed(1)} s`;
+let drawn = PAGE, openPlots = [];
 const sorting = byId("sort");
 sorting.append(new Option("worst of the systems shown", -1), ...data.systems.map((s, k) => new Option(s.name, k)), new Option("time", -2));
 sorting.addEventListener("change", () => drawCards());
-byId("more").addEventListener("click", () => { listed += PAGE; drawCards(); });
+byId("more").addEventListener("click", () => { drawn += PAGE; drawCards(); });
 
 const largest = (card, systems) => Math.max(-1, ...systems.map(k => scoreOf(card, k, "horizontal_max")).filter(v => v !== null));
 function sorted() {
@@ -18,19 +19,19 @@ function drawCards() {
   for (const p of openPlots) p.destroy();
   openPlots = [];
   const cards = sorted(), apart = cards.filter(([c]) => c.labels.length).length, at = cards.findIndex(([, i]) => i === state.open);
-  if (at >= listed) listed = at + 1;
+  if (at >= drawn) drawn = at + 1;
   const scale = logScale(cards.flatMap(([c]) => visible().map(k => scoreOf(c, k, "horizontal_max"))).filter(v => v !== null));
   byId("count").textContent = `${cards.length} outages${apart ? `, ${apart} of them set apart` : ""}`;
   byId("axis").replaceChildren(element("span"), axisStrip(scale, "m"), element("span"));
-  byId("cards").replaceChildren(...cards.slice(0, listed).map(([card, i]) => cardOf(card, i, scale)));
-  byId("more").hidden = cards.length <= listed;
+  byId("cards").replaceChildren(...cards.slice(0, drawn).map(([card, i]) => cardOf(card, i, scale)));
+  byId("more").hidden = cards.length <= drawn;
 }
 
 function cardOf(card, index, scale) {
   const item = element("li", "", "card"), open = state.open === index, shown = visible();
   const head = button("", "head", () => change({ open: state.open === index ? null : index }), { "aria-expanded": open, "data-outage": index });
   const title = element("span", "", "title");
-  title.append(element("b", `${card.start}–${card.end} s`), element("small", data.recordings.length > 1 ? data.recordings[card.r].name : `${clockText(card.start)} into the drive`));
+  title.append(element("b", spanText(card)), element("small", data.recordings.length > 1 ? data.recordings[card.r].name : `${clockText(card.start)} into the drive`));
   for (const label of card.labels) title.append(element("small", label, "pill apart"));
   const figure = element("span", "", "figure");
   figure.append(element("b", `${short(largest(card, shown))} m`), element("small", card.distance === null ? "" : `in ${short(card.distance)} m`));
@@ -49,7 +50,7 @@ function panelOf(card) {
     ["Along, largest [m]", "along_max"], ["Cross, largest [m]", "cross_max"], ["Vertical, largest [m]", "vertical_max"], ["Velocity, largest [m/s]", "velocity_max"],
     ["Heading, largest", "heading_deg_max"], ["Truth in the 95 % ellipse", "coverage_95"], ["NEES", "nees"]];
   const text = (v, name) => name === "coverage_95" ? percentText(v) : short(v) + (name.startsWith("heading") && v !== null ? "°" : "");
-  panel.append(chartsOf(card, shown), sheet(`Scores from ${card.start} to ${card.end} s`, ["", ...shown.map(k => [data.systems[k].name, "n"])],
+  panel.append(chartsOf(card, shown), sheet(`Scores, ${spanText(card)}`, ["", ...shown.map(k => [data.systems[k].name, "n"])],
     columns.map(([title, name]) => [title, ...shown.map(k => [text(scoreOf(card, k, name), name), "n"])]), "small"));
   const foot = element("p", `Truth: ${card.truth}. NEES of an honest system is about 2; its truth lies in the 95 % ellipse 95 % of the time.${card.labels.length ? ` Set apart: ${card.labels.join(", ")}.` : ""} `, "quiet foot");
   foot.append(jump);
@@ -82,7 +83,7 @@ byId("cards").addEventListener("keydown", e => {
   if (next) { e.preventDefault(); next.focus(); }
 });
 onState.push(filtered => {
-  if (filtered) listed = PAGE;
+  if (filtered) drawn = PAGE;
   const focused = document.activeElement && document.activeElement.dataset.outage;
   drawCards();
   if (focused) { const again = document.querySelector(`[data-outage="${focused}"]`); if (again) again.focus({ preventScroll: true }); }

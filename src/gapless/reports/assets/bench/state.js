@@ -1,6 +1,6 @@
-// What the reader chose: recording, protocol, length, systems, and the outage that is open.
+// What the reader chose: recording (-1: all), protocol, length, systems, and the outage that is open.
 const state = {
-  r: data.recordings.length === 1 ? 0 : -1, p: 0,
+  r: -1, p: 0,
   group: data.groups.includes("60 s") ? "60 s" : data.groups[data.groups.length >> 1],
   systems: new Set(data.systems.map((_, k) => k)), open: null, log: false,
 };
@@ -29,8 +29,10 @@ function systemName(k) {
 
 // The bar of choices at the top.
 const choices = [];
+const ROOM = 48;   // letters that buttons may take; more of them become a list
 function segmented(label, key, options) {
   if (options.length < 2) return null;
+  if (options.reduce((n, [, name]) => n + name.length + 2, 0) > ROOM) return listed(label, key, options);
   const box = element("div", "", "segments", { role: "group", "aria-label": label });
   box.append(element("span", label));
   for (const [value, name] of options) {
@@ -40,12 +42,12 @@ function segmented(label, key, options) {
   }
   return box;
 }
-function recordingChoice() {
-  if (data.recordings.length < 2) return null;
-  const label = element("label", "Recording "), select = element("select", "", "", { id: "recording" });
-  select.append(new Option("all", -1), ...data.recordings.map((r, k) => new Option(r.name, k)));
-  select.addEventListener("change", () => change({ r: +select.value }));
-  choices.push(() => { select.value = state.r; });
+function listed(title, key, options) {
+  if (options.length < 2) return null;
+  const label = element("label", `${title} `), select = element("select", "", "", { "data-filter": key });
+  select.append(...options.map(([, name], i) => new Option(name, i)));
+  select.addEventListener("change", () => change({ [key]: options[select.value][0] }));
+  choices.push(() => { select.value = options.findIndex(([value]) => value === state[key]); });
   label.append(select);
   return label;
 }
@@ -64,7 +66,7 @@ function systemToggles() {
   return box;
 }
 byId("filters").append(...[
-  recordingChoice(),
+  data.recordings.length > 1 && listed("Recording", "r", [[-1, "all"], ...data.recordings.map((one, k) => [k, one.name])]),
   segmented("Outages", "group", data.groups.map(name => [name, name])),
   segmented("Protocol", "p", data.protocols.map((name, k) => [k, name])),
   systemToggles(),
