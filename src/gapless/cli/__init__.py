@@ -12,6 +12,7 @@ from gapless import __version__
 from gapless.cli.convert import convert
 from gapless.cli.fuse import fuse
 from gapless.cli.inspect import inspect
+from gapless.cli.report import report
 from gapless.cli.simulate import simulate
 from gapless.cli.sweep import sweep
 from gapless.errors import GaplessError
@@ -82,7 +83,7 @@ def gapless() -> None:
     """
 
 
-for _verb in (inspect, fuse, simulate, convert, sweep):
+for _verb in (inspect, fuse, report, simulate, convert, sweep):
     gapless.add_command(_verb)
 
 

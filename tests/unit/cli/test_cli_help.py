@@ -5,8 +5,8 @@ import sys
 
 import pytest
 
-VERBS = ("", "inspect", "fuse", "simulate", "convert", "sweep")
-HEAVY = ("numpy", "numba", "pyarrow", "msgspec", "pandas", "scipy", "fsspec", "distributed")
+VERBS = ("", "inspect", "fuse", "report", "simulate", "convert", "sweep")
+HEAVY = ("matplotlib", "numpy", "numba", "pyarrow", "msgspec", "pandas", "scipy", "fsspec", "distributed")
 
 
 @pytest.mark.parametrize("verb", VERBS)
