@@ -41,16 +41,16 @@ class Journal:
 
     def __init__(self, layout: Layout, misalignment: float = 0.0) -> None:
         self.layout = layout
-        askew = [layout.blocks[name] for name in ("attitude", "mounting") if name in layout]
-        self._unseen = np.zeros(layout.n)
-        for block in askew:
-            self._unseen[block] = misalignment**2
         cross = [(0, 1), (6, 7), (6, 8), (7, 8)]
+        self._unseen = np.zeros(layout.n + len(cross))
+        for name in ("attitude", "mounting"):
+            self._unseen[layout.blocks.get(name, slice(0))] = misalignment**2
         self._kept = np.array([i * ROW + j for i, j in [*((i, i) for i in range(layout.n)), *cross]])
         self.last = -math.inf
         self.times: list[float] = []
         self.states: list[Array] = []
         self.variances: list[Array] = []
+        self.shared: list[Array] = []
         self.sources: list[str] = []
         self.channels: dict[str, _Channel] = {}
         self.latest: dict[str, float] = {}
@@ -65,7 +65,7 @@ class Journal:
             [s]
         belief : Belief
         shared : ndarray, shape (3, 3)
-            Covariance of the position on top of the belief's [m^2].
+            Covariance of the position on top of the belief's [m^2]; not to be changed later.
         source : str
             What holds it.
         """
@@ -74,11 +74,8 @@ class Journal:
         self.last = time
         self.times.append(time)
         self.states.append(belief.estimate().copy())
-        variances = belief.p[self._kept]
-        variances[: self.layout.n] += self._unseen
-        variances[:3] += shared.diagonal()
-        variances[self.layout.n] += shared[0, 1]
-        self.variances.append(variances)
+        self.variances.append(belief.p[self._kept])
+        self.shared.append(shared)
         self.sources.append(source)
 
     def innovation(self, channel: str, time: float, z: Array, s: Array, nis: float, factor: float) -> None:
@@ -135,7 +132,7 @@ class Journal:
         """
         self.last, n, counts, latest, aligned = mark
         self.latest = dict(latest)
-        for rows in (self.times, self.states, self.variances, self.sources):
+        for rows in (self.times, self.states, self.variances, self.shared, self.sources):
             del rows[n:]
         for name, channel in self.channels.items():
             channel.cut(counts.get(name, 0))
@@ -158,8 +155,7 @@ class Journal:
         Trajectory
         """
         n = self.layout.n
-        x = np.array(self.states).reshape(-1, n + 1)
-        var = np.array(self.variances).reshape(-1, n + 4)
+        x, var = np.array(self.states).reshape(-1, n + 1), self._stated()
         euler = attitude.to_euler(x[:, 6:10])
         sd = np.sqrt(np.column_stack([var[:, :6], _euler_variance(var, n, euler)]))
         return Trajectory(
@@ -173,12 +169,19 @@ class Journal:
         -------
         states, sds : dict of str to ndarray, shape (rows, k)
         """
-        x = np.array(self.states).reshape(-1, self.layout.n + 1)
-        var = np.array(self.variances).reshape(-1, self.layout.n + 4)
+        x, var = np.array(self.states).reshape(-1, self.layout.n + 1), self._stated()
         names = [name for name, s in self.layout.blocks.items() if s.start >= 9]
         where = self.layout.blocks
         states = {name: x[:, where[name].start + 1 : where[name].stop + 1] for name in names}
         return states, {name: np.sqrt(var[:, where[name]]) for name in names}
+
+    def _stated(self) -> Array:
+        """Variances with what the filter does not know of: what fixes share, how the box is turned."""
+        var = np.array(self.variances).reshape(-1, len(self._kept)) + self._unseen
+        shared = np.array(self.shared).reshape(-1, 3, 3)
+        var[:, :3] += np.diagonal(shared, axis1=1, axis2=2)
+        var[:, self.layout.n] += shared[:, 0, 1]
+        return var
 
     def innovations(self) -> dict[str, Innovations]:
         """Innovations by channel.

@@ -67,8 +67,10 @@ def belief(navigator: Navigator) -> tuple[bytes, ...]:
 def rows(navigator: Navigator, start: float = -np.inf, end: float = np.inf) -> list[tuple[object, ...]]:
     """Journal rows in [start, end)."""
     j = navigator.journal
-    found = zip(j.times, j.states, j.variances, j.sources, strict=True)
-    return [(t, x.tobytes(), p.tobytes(), s) for t, x, p, s in found if start <= t < end]
+    found = zip(j.times, j.states, j.variances, j.shared, j.sources, strict=True)
+    return [
+        (t, x.tobytes(), p.tobytes(), common.tobytes(), s) for t, x, p, common, s in found if start <= t < end
+    ]
 
 
 def heard(navigator: Navigator, skip: dict[str, int] | None = None) -> dict[str, list[tuple[object, ...]]]:

@@ -136,10 +136,16 @@ def job(
     """
     recipe = _system(system, config, without, clock)
 
+    from concurrent.futures import ThreadPoolExecutor
+
     from gapless.io import read
     from gapless.scenarios import plan
 
-    found = read(*recording)
+    with ThreadPoolExecutor(1) as reader:  # it waits for the disk and for pyarrow's own threads
+        reading = reader.submit(read, *recording)
+        import gapless.systems.fuse  # noqa: F401 - what navigates takes as long to load
+
+        found = reading.result()
     return Job(found, recipe, plan([*outage, *outages], found.duration), causal)
 
 

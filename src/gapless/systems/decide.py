@@ -31,7 +31,8 @@ WINDOWS = (100.0, 200.0)
 LOOSE = 30.0
 """Standard deviation of positions in a first pass that has velocities [m]."""
 SETTLED = 0.008
-"""Passes end when no offset moves by more [s]; each goes about two thirds of what is left."""
+"""Passes end when no offset moves by more [s], or by more than two of its standard deviations: each
+goes about two thirds of what is left."""
 VAGUE = 0.1
 """An offset is not believed where its standard deviation is larger [s]."""
 
@@ -119,7 +120,7 @@ class _FirstPass:
             navigator = self._navigate(jitter)
             if len(navigator.journal.times) < 150:  # half a minute
                 return
-            if self._learn(navigator) < SETTLED:
+            if self._learn(navigator):
                 return
 
     def _navigate(self, jitter: float) -> Navigator:
@@ -139,15 +140,18 @@ class _FirstPass:
                 break
         return navigator
 
-    def _learn(self, navigator: Navigator) -> float:
+    def _learn(self, navigator: Navigator) -> bool:
+        """Take the estimates of a pass; whether they settled."""
         path, (blocks, sds) = navigator.journal.trajectory(), navigator.journal.blocks()
         self.span = float(path.time[-1] - path.time[0])
         self._learn_mounting(blocks, sds)
-        before = dict(self.offsets)
+        settled = True
         for channel, estimate in self._estimates(path, blocks).items():
+            before = self.offsets[channel]
             self.found[channel] = estimate
             self.offsets[channel] = estimate.value if estimate.sd < VAGUE else 0.0
-        return float(max(abs(self.offsets[c] - before[c]) for c in CHANNELS))
+            settled &= abs(self.offsets[channel] - before) < max(SETTLED, 2.0 * estimate.sd)
+        return settled
 
     def _estimates(self, path: Trajectory, blocks: dict[str, Array]) -> dict[str, Offset]:
         gnss, odometer = self.past.gnss, self.past.odometer
