@@ -140,7 +140,7 @@ def job(
     from gapless.scenarios import plan
 
     found = read(*recording)
-    return Job(found, recipe, plan([*outage, *outages], found.duration), causal)
+    return Job(found, recipe, plan([*outage, *outages], found), causal)
 
 
 def _system(name: str | None, config: Path | None, without: Sequence[str], clock: Sequence[str]) -> System:

@@ -1,10 +1,10 @@
 """Scoring a solution: errors against a truth, outages one by one, statistics over them."""
 
 from gapless.evaluation.errors import Errors, solution_errors
-from gapless.evaluation.motion import first_motion
 from gapless.evaluation.outages import OutageScore, score_outage, score_outages
 from gapless.evaluation.scores import Accuracy, Scores, pool_spread, score
 from gapless.evaluation.statistics import Consistency, Spread, chi_square_quantile, consistency, nees, spread
+from gapless.motion import first_motion
 
 __all__ = [
     "Accuracy",

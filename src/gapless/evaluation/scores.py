@@ -9,9 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from gapless.evaluation.errors import Errors, at_antenna, gnss_truth, solution_errors
-from gapless.evaluation.motion import first_motion
 from gapless.evaluation.outages import LABELS, OutageScore, height_offset, score_outages
 from gapless.evaluation.statistics import Consistency, Spread, consistency, rms, spread
+from gapless.motion import first_motion
 from gapless.recording import Recording
 from gapless.scenarios import Outage, withheld
 from gapless.solution import Solution

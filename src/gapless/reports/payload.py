@@ -11,7 +11,7 @@ import numpy as np
 
 from gapless.evaluation import Scores, chi_square_quantile
 from gapless.evaluation.errors import gnss_truth
-from gapless.evaluation.motion import offset_ned
+from gapless.motion import offset_ned
 from gapless.recording import Array, Recording, Trajectory
 from gapless.reports.charts import charts
 from gapless.reports.decimate import simplify

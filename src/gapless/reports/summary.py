@@ -10,7 +10,7 @@ import numpy as np
 
 from gapless import __version__
 from gapless.evaluation import Scores, consistency
-from gapless.evaluation.motion import horizontal_velocity, motion
+from gapless.motion import horizontal_velocity, motion
 from gapless.recording import Trajectory
 from gapless.reports.numbers import measured, plain
 from gapless.reports.quantities import state

@@ -161,7 +161,7 @@ def _collect(
             *_alignments(journal, recording.start),
             *_stops(journal),
         ),
-        outages=tuple((o.start, o.end) for o in outages),
+        outages=tuple((o.start, o.until) for o in outages),
         start=recording.start,
         notes=recording.notes,
     )
