@@ -17,7 +17,7 @@ from gapless.reports.quantities import state
 from gapless.solution import Decision, Innovations, Solution
 from gapless.units import DEG
 
-_ANGLES = ("roll_rmse", "pitch_rmse", "heading_rmse", "heading_max")
+_ANGLES = ("roll_rmse", "pitch_rmse", "heading_rmse", "heading_max", "heading_end")
 
 
 def summarise(solution: Solution, scores: Scores | None = None) -> dict[str, Any]:

@@ -169,7 +169,7 @@ def _outage_row(index: int, o: OutageScore) -> list[Cell]:
         number(o.heading_max / DEG, "", 2) + "°",
         distance(o.distance),
         number(o.percent, "%", 2),
-        percent(o.coverage),
+        percent(o.coverage_95),
     )
     return [name, *cells, escape(", ".join(o.labels)) or DASH]
 

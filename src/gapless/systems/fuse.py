@@ -80,6 +80,15 @@ def _decide_before(open_sky: Recording, system: System, outages: tuple[Outage, .
         decided = decide(open_sky, system, horizon)
         if decided.span > 0.0:
             break
+    if horizon > horizons[0]:
+        late = Decision(
+            "decisions taken late",
+            round(horizon - open_sky.start, 3),
+            "s after the first sample",
+            "data",
+            "before the outages that began earlier there was too little motion to decide from",
+        )
+        decided = replace(decided, decisions=(*decided.decisions, late))
     return decided
 
 
