@@ -19,6 +19,10 @@ class AlignmentError(GaplessError):
     """The data never allowed an initial position, velocity or attitude."""
 
 
+class LaboratoryError(GaplessError):
+    """A system cannot be scored: it reads the future."""
+
+
 class MissingExtraError(GaplessError):
     """An optional dependency is not installed.
 

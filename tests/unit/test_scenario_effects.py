@@ -39,8 +39,8 @@ def apart(one, other):
     return offset_ned(one.lla, other.lla)
 
 
-def struck(gnss, text, seed=0):
-    return withhold(gnss, [parse(text)], START, seed)
+def struck(gnss, text):
+    return withhold(gnss, [parse(text)], START)
 
 
 def test_noise_has_the_size_asked_for_and_stays_inside(steady):
@@ -103,7 +103,9 @@ def test_an_effect_depends_on_seed_and_start_alone_and_on_nothing_later(steady, 
     whole = struck(steady.gnss, text)
     again = withhold(steady.gnss, [parse("110:115"), parse(text)], START)
     cut = struck(steady.gnss.slice(0.0, START + 60.0), text)
-    other = struck(steady.gnss, text, seed=1)
+    outage = parse(text)
+    reseeded = replace(outage, effect=replace(outage.effect, seed=1))
+    other = withhold(steady.gnss, [reseeded], START)
     n = int(np.searchsorted(whole.time, START + 100.0))
     for name in ("time", "lla", "v_n"):
         a, b, c = (getattr(g, name) for g in (whole, again, cut))
@@ -180,6 +182,7 @@ def test_outages_begin_in_turns_at_stops_and_at_speed():
         "random=180,length=60,first=240,seed=7",
         "random=180,length=60,first=240,seed=0,effect=spiked:80",
         "at=stop,every=180,length=60,first=240,effect=velocity",
+        "1:2,effect=noisy:10:3",
         "gaps=5",
     ],
 )
@@ -205,6 +208,8 @@ def test_an_effect_without_a_size_takes_the_default():
         ("1:2,effect=velocity:3", "has no size"),
         ("1:2,effect=noisy:0", "above zero"),
         ("1:2,effect=noisy:x", "'x' is not a number"),
+        ("1:2,effect=noisy:1:2.5", "seed 2.5 is not a whole number"),
+        ("1:2,effect=noisy:1:2:3", "at most a seed"),
         ("1:2,size=3", "'size' is unknown here"),
         ("random=180,length=60", "first missing"),
         ("random=180,length=60,first=240,seed=1.5", "not a whole number"),

@@ -32,10 +32,13 @@ class Effect:
         A key of `KINDS`.
     size : float
         How much of it, in the unit of its kind; 0 where there is no more and less.
+    seed : int
+        Of what is drawn.
     """
 
     name: str
     size: float = 0.0
+    seed: int = 0
 
     @property
     def lasting(self) -> float:
@@ -43,25 +46,26 @@ class Effect:
         return KINDS[self.name].lasting
 
     def __str__(self) -> str:
-        return f"{self.name}:{self.size:.10g}" if self.size else self.name
+        size = f":{self.size:.10g}" if self.size else ""
+        return self.name + size + (f":{self.seed}" if self.seed else "")
 
-    def apply(self, gnss: Gnss, begin: float, end: float, seed: int) -> Gnss:
+    def apply(self, gnss: Gnss, begin: float, end: float) -> Gnss:
         """What the receiver would have logged.
+
+        What is drawn depends on the seed and on `begin` only: neither on other outages nor on what
+        is logged later.
 
         Parameters
         ----------
         gnss : Gnss
         begin, end : float
             Logged stamps [s] of the outage.
-        seed : int
-            What is drawn depends on it and on `begin` only: neither on other outages nor on
-            what is logged later.
 
         Returns
         -------
         Gnss
         """
-        rng = np.random.default_rng([seed, round(abs(begin) * 1000.0)])
+        rng = np.random.default_rng([self.seed, round(abs(begin) * 1000.0)])
         return KINDS[self.name].apply(gnss, begin, end, self.size, rng)
 
 

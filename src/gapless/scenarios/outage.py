@@ -123,7 +123,7 @@ def withheld(time: Array, outages: Sequence[Outage], start: float) -> NDArray[np
     return mask
 
 
-def withhold(gnss: Gnss, outages: Sequence[Outage], start: float, seed: int = 0) -> Gnss:
+def withhold(gnss: Gnss, outages: Sequence[Outage], start: float) -> Gnss:
     """What the receiver would have logged through the outages.
 
     Parameters
@@ -132,8 +132,6 @@ def withhold(gnss: Gnss, outages: Sequence[Outage], start: float, seed: int = 0)
     outages : sequence of Outage
     start : float
         Time of the first IMU sample [s].
-    seed : int
-        Of effects that draw.
 
     Returns
     -------
@@ -141,5 +139,5 @@ def withhold(gnss: Gnss, outages: Sequence[Outage], start: float, seed: int = 0)
         Where the effect is silence the epochs are gone, position and velocity both.
     """
     for outage in sorted(outages):
-        gnss = outage.effect.apply(gnss, start + outage.start, start + outage.end, seed)
+        gnss = outage.effect.apply(gnss, start + outage.start, start + outage.end)
     return gnss

@@ -6,7 +6,8 @@
     at=turn,every=180,length=60,first=240       beginning in a turn, at a stop, at speed
     gaps=5                                      the recording's own gaps of 5 s and more
 
-All but the last may end with `,effect=noisy` or `,effect=noisy:10`: see `KINDS` for the effects.
+All but the last may end with `,effect=noisy`, with a size `,effect=noisy:10`, with a seed for what is
+drawn `,effect=noisy:10:1`: see `KINDS` for the effects.
 """
 
 from __future__ import annotations
@@ -26,7 +27,9 @@ _PERIODIC: Final = "write every=180,length=60,first=240 and, if wanted, shift=60
 _RANDOM: Final = "write random=180,length=60,first=240 and, if wanted, seed=1"
 _AT: Final = f"write at={'|'.join(PLACES)},every=180,length=60,first=240 (seconds)"
 _GAPS: Final = "write gaps=5 for the recording's own gaps of 5 s and more"
-_EFFECT: Final = f"write effect={'|'.join(k for k in KINDS if k != 'real')} or with a size, effect=noisy:10"
+_EFFECT: Final = (
+    f"write effect={'|'.join(k for k in KINDS if k != 'real')} or with a size and a seed, effect=noisy:10:1"
+)
 
 
 def parse(text: str) -> Plan:
@@ -139,18 +142,25 @@ def _spaced(
 def _effect(text: str, word: str | None) -> Effect:
     if word is None:
         return SILENT
-    name, colon, size = word.partition(":")
+    name, *numbers = word.split(":")
     kind = KINDS.get(name)
     if kind is None or name == "real":
         _refuse(text, f"effect {name!r} is unknown", _EFFECT)
-    if not colon:
+    if not numbers:
         return Effect(name, kind.size)
     if not kind.size:
         _refuse(text, f"effect {name} has no size", _EFFECT)
-    value = _number(text, size, _EFFECT)
-    if value <= 0.0:
-        _refuse(text, f"effect {name} needs a size above zero", _EFFECT)
-    return Effect(name, value)
+    size = _number(text, numbers[0], _EFFECT)
+    if size <= 0.0 or len(numbers) > 2:
+        _refuse(text, f"effect {name} needs a size above zero and at most a seed after it", _EFFECT)
+    return Effect(name, size, _whole(text, numbers[1], _EFFECT) if len(numbers) == 2 else 0)
+
+
+def _whole(text: str, part: str, form: str) -> int:
+    value = _number(text, part, form)
+    if value != int(value):
+        _refuse(text, f"seed {value:g} is not a whole number", form)
+    return int(value)
 
 
 def _stretch(text: str, parts: Sequence[str]) -> Outage:
@@ -175,10 +185,8 @@ def _periodic(text: str, values: Mapping[str, str]) -> Periodic:
 def _random(text: str, values: Mapping[str, str]) -> Random:
     _only(text, values, _RANDOM, ("random", "length", "first"), "seed")
     every, length, first = _spaced(text, values, _RANDOM, "random")
-    seed = _number(text, values.get("seed", "0"), _RANDOM)
-    if seed != int(seed):
-        _refuse(text, f"seed {seed:g} is not a whole number", _RANDOM)
-    return Random(every, length, first, int(seed), _effect(text, values.get("effect")))
+    seed = _whole(text, values.get("seed", "0"), _RANDOM)
+    return Random(every, length, first, seed, _effect(text, values.get("effect")))
 
 
 def _at(text: str, values: Mapping[str, str]) -> At:
