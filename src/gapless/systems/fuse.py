@@ -21,6 +21,8 @@ from gapless.systems.recipe import System
 
 Progress = Callable[[float], None]
 """Told the time that navigation has reached [s after the first sample]."""
+DECISIONS_TAKEN_LATE = "decisions taken late"
+"""Names the decision that tells that an outage had begun before anything could be decided."""
 
 
 def fuse(
@@ -96,7 +98,7 @@ def decide_before(open_sky: Recording, system: System, outages: tuple[Outage, ..
             break
     if horizon > horizons[0]:
         late = Decision(
-            "decisions taken late",
+            DECISIONS_TAKEN_LATE,
             round(horizon - open_sky.start, 3),
             "s after the first sample",
             "data",
