@@ -9,6 +9,7 @@ from typing import Any
 import click
 
 from gapless import __version__
+from gapless.cli.bench import bench
 from gapless.cli.convert import convert
 from gapless.cli.fuse import fuse
 from gapless.cli.inspect import inspect
@@ -81,7 +82,7 @@ def gapless() -> None:
     """
 
 
-for _verb in (inspect, fuse, simulate, convert):
+for _verb in (inspect, fuse, bench, simulate, convert):
     gapless.add_command(_verb)
 
 

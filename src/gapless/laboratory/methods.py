@@ -31,6 +31,8 @@ class Run(NamedTuple):
     ----------
     solution : Solution
         *passes*: through all the outages. *isolated*: with every fix there is.
+    planned : tuple of Outage
+        All that the run was for.
     pieces : tuple of (Outage, Trajectory)
         *isolated*: through each outage alone; a trajectory covers its outage at least.
     forks : tuple of Fork
@@ -38,6 +40,7 @@ class Run(NamedTuple):
     """
 
     solution: Solution
+    planned: tuple[Outage, ...]
     pieces: tuple[tuple[Outage, Trajectory], ...] = ()
     forks: tuple[Fork, ...] = ()
 
@@ -159,7 +162,7 @@ class Recipe:
         """
         decided = self._decided(recording, outages)
         solution, forks = run_with_forks(recording, self.system, outages, outages, decided, RATE)
-        return Run(solution, forks=forks)
+        return Run(solution, outages, forks=forks)
 
     def isolated(self, recording: Recording, outages: tuple[Outage, ...]) -> Run:
         """See `Method`.
@@ -176,7 +179,7 @@ class Recipe:
         decided = self._decided(recording, outages)
         whole, forks = run_with_forks(recording, self.system, (), outages, decided, RATE)
         pieces = tuple((f.outage, piece(f, recording, whole, self.system, decided)) for f in forks)
-        return Run(whole, pieces, forks)
+        return Run(whole, outages, pieces, forks)
 
     def peek(
         self, recording: Recording, outages: Sequence[Outage], run: Run, rng: np.random.Generator
@@ -197,7 +200,7 @@ class Recipe:
         -------
         Peek or None
         """
-        every, known = tuple(f.outage for f in run.forks), dict(run.pieces)
+        every, known = run.planned, dict(run.pieces)
         late = stamps(self.system, self._decided(recording, every).offsets)
         looked_at = [f for f in run.forks if f.outage in outages]
         for fork in looked_at:
@@ -272,7 +275,7 @@ class Function:
         -------
         Run
         """
-        return Run(self.run(recording, outages))
+        return Run(self.run(recording, outages), outages)
 
     def isolated(self, recording: Recording, outages: tuple[Outage, ...]) -> Run:
         """See `Method`: a run for each outage.
@@ -287,7 +290,7 @@ class Function:
         Run
         """
         pieces = tuple((o, self.run(recording, (o,)).trajectory) for o in outages)
-        return Run(self.run(recording, ()), pieces)
+        return Run(self.run(recording, ()), outages, pieces)
 
     def peek(
         self, recording: Recording, outages: Sequence[Outage], run: Run, rng: np.random.Generator
@@ -308,7 +311,7 @@ class Function:
         known = dict(run.pieces)
         for outage in outages:
             rows = known.get(outage, run.solution.trajectory)
-            gone = (outage,) if known else tuple(Outage(a, b) for a, b in run.solution.outages)
+            gone = (outage,) if known else run.planned
             for time in samples(rows, outage, recording.start, rng):
                 found = from_the_start(self.run, recording, gone, rows, time, rng)
                 if found is not None:

@@ -5,7 +5,7 @@ import sys
 
 import pytest
 
-VERBS = ("", "inspect", "fuse", "simulate", "convert")
+VERBS = ("", "inspect", "fuse", "bench", "simulate", "convert")
 HEAVY = ("numpy", "numba", "pyarrow", "msgspec", "pandas", "scipy")
 
 
