@@ -115,8 +115,9 @@ def first_difference(
     float or None
         [s]
     """
-    if not times:
+    if not times or not len(rows):
         return None
+    after = max(after, float(np.nextafter(rows.time[0], -np.inf)))
     a, b = (t.take((t.time > after) & (t.time <= times[-1])) for t in (rows, again))
     n = min(len(a), len(b))
     same = np.ones(n, bool)

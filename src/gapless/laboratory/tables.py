@@ -108,7 +108,7 @@ def _pairs(results: Results, protocol: str, marks: dict[str, str]) -> list[Table
             marks[row["system"]],
             str(row["n"]),
             _ratio(row["median_ratio"]),
-            f"{_ratio(row['geometric'])} ({_ratio(row['geometric_lo'])}–{_ratio(row['geometric_hi'])})",
+            f"{_ratio(row['geometric'])} [{_ratio(row['geometric_lo'])}, {_ratio(row['geometric_hi'])}]",
             f"{_percent(row['better'])} %",
             _ratio(row["worst_ratio"]),
             _p(row["p"]),
@@ -118,9 +118,9 @@ def _pairs(results: Results, protocol: str, marks: dict[str, str]) -> list[Table
         for row in rows
     )
     note = (
-        "Ratios of errors on the same outages, below 1 where the system is better; p of Wilcoxon's signed-rank "
-        "test on their logarithms, neighbouring outages voting together, corrected (Holm) for the number of "
-        "systems."
+        "Ratios of errors on the same outages, below 1 where the system is better; p of Wilcoxon's "
+        "signed-rank test on their logarithms, neighbouring outages voting together, corrected (Holm) for "
+        "the number of systems."
     )
     return [Table(f"Against {marks[results.methods[0].name]}, protocol {protocol}", head, cells, note)]
 
@@ -161,27 +161,27 @@ def _checks(results: Results) -> Table:
 
 def _metres(value: float) -> str:
     if math.isnan(value):
-        return "–"
+        return "-"
     return f"{value:.1f}" if value < 100.0 else f"{value:.0f}"
 
 
 def _span(row: Row, name: str) -> str:
     if math.isnan(row[f"{name}_lo"]):
         return _metres(row[name])
-    return f"{_metres(row[name])} ({_metres(row[f'{name}_lo'])}–{_metres(row[f'{name}_hi'])})"
+    return f"{_metres(row[name])} [{_metres(row[f'{name}_lo'])}, {_metres(row[f'{name}_hi'])}]"
 
 
 def _percent(share: float) -> str:
-    return "–" if math.isnan(share) else f"{100.0 * share:.0f}"
+    return "-" if math.isnan(share) else f"{100.0 * share:.0f}"
 
 
 def _ratio(value: float) -> str:
-    return "–" if math.isnan(value) else f"{value:.2f}"
+    return "-" if math.isnan(value) else f"{value:.2f}"
 
 
 def _p(value: float) -> str:
     if math.isnan(value):
-        return "–"
+        return "-"
     return "< 0.0001" if value < 1e-4 else f"{value:.4f}"
 
 
@@ -280,7 +280,7 @@ def as_latex(found: Iterable[Table]) -> str:
 
 _TEX: Final = {
     "\\": r"\textbackslash{}", "&": r"\&", "%": r"\%", "$": r"\$", "#": r"\#", "_": r"\_", "{": r"\{",
-    "}": r"\}", "~": r"\textasciitilde{}", "^": r"\textasciicircum{}", "<": r"$<$", "–": "--",
+    "}": r"\}", "~": r"\textasciitilde{}", "^": r"\textasciicircum{}", "<": r"$<$",
 }  # fmt: skip
 
 
