@@ -96,9 +96,8 @@ def main() -> None:
             share = coverage(n, neighbours, given.repeats)
             print(f"{n:4d} outages, {told}: the interval holds the median in {100.0 * share:.1f} %")
         power, false = (detected(gain, neighbours, given.repeats) for gain in (0.9, 1.0))
-        print(
-            f"  60 outages, {told}: 10 % better shown in {100.0 * power:.1f} %, false in {100.0 * false:.1f} %"
-        )
+        shown = f"10 % better shown in {100.0 * power:.1f} %, falsely in {100.0 * false:.1f} %"
+        print(f"  60 outages, {told}: {shown}")
     if given.recording:
         isolated(given.recording)
 

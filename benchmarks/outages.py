@@ -13,8 +13,6 @@ import os
 from collections.abc import Sequence
 from pathlib import Path
 
-from msgspec.structs import replace
-
 from gapless.laboratory.bench import bench
 from gapless.laboratory.methods import Recipe
 from gapless.laboratory.study import PASSES, ladder, stored
@@ -27,7 +25,7 @@ LADDER = (
     System(name="ins", sensors=GNSS, constraints=()),
     System(name="+ zero velocity", sensors=GNSS, constraints=("zero_velocity",)),
     System(name="+ non-holonomic", sensors=GNSS),
-    replace(System(), name="+ odometer"),
+    System(name="+ odometer"),
 )
 
 

@@ -25,7 +25,8 @@ _OUTAGE = (
     ),
     click.option(
         "--outages", multiple=True, metavar="PLAN",
-        help="Withhold GNSS at regular intervals: every=180,length=60,first=240 (seconds).",
+        help="Withhold GNSS at regular intervals: every=180,length=60,first=240 (seconds), or by another "
+        "plan: at random, in turns, degraded (docs/bench.md). Repeatable.",
     ),
 )  # fmt: skip
 _RECIPE = (
