@@ -14,7 +14,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from gapless.laboratory.bench import bench
-from gapless.laboratory.methods import Recipe
+from gapless.laboratory.recipes import Recipe
 from gapless.laboratory.study import PASSES, ladder, stored
 from gapless.laboratory.tables import as_text, tables
 from gapless.reports import summarise

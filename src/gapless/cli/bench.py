@@ -150,7 +150,7 @@ def _sources(
 
 
 def _methods(systems: str) -> Sequence[Method]:
-    from gapless.laboratory.methods import Recipe
+    from gapless.laboratory.recipes import Recipe
     from gapless.systems.recipe import load
 
     return tuple(Recipe(load(name.strip())) for name in systems.split(","))

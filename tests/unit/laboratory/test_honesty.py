@@ -7,10 +7,11 @@ import pytest
 
 from gapless.errors import LaboratoryError
 from gapless.feed import events
-from gapless.laboratory import methods
+from gapless.laboratory import recipes
 from gapless.laboratory.bench import bench
 from gapless.laboratory.jobs import Job, execute
-from gapless.laboratory.methods import Function, Recipe
+from gapless.laboratory.methods import Function
+from gapless.laboratory.recipes import Recipe
 from gapless.laboratory.study import scenario
 from gapless.motion import displace
 from gapless.recording import Trajectory
@@ -82,7 +83,7 @@ def imu_one_sample_ahead(recording, *rest):
 
 @pytest.mark.parametrize("protocol", ["passes", "isolated"])
 def test_a_feed_that_is_one_imu_sample_ahead_is_refused(late, given, constraints, protocol, monkeypatch):
-    monkeypatch.setattr(methods, "events", imu_one_sample_ahead)
+    monkeypatch.setattr(recipes, "events", imu_one_sample_ahead)
     monkeypatch.setattr(forks, "events", imu_one_sample_ahead)
     with pytest.raises(LaboratoryError, match="constraints reads the future"):
         put(late, given, Recipe(constraints), protocols=(protocol,))
@@ -98,7 +99,7 @@ def fix_that_knows_the_next(recording, *rest):
 
 def test_a_feed_that_knows_when_the_next_fix_comes_is_refused(late, given, constraints, monkeypatch):
     """Within a degraded outage: the last of the thinned fixes is weighed by what follows it."""
-    monkeypatch.setattr(methods, "events", fix_that_knows_the_next)
+    monkeypatch.setattr(recipes, "events", fix_that_knows_the_next)
     monkeypatch.setattr(forks, "events", fix_that_knows_the_next)
     with pytest.raises(LaboratoryError, match="constraints reads the future"):
         put(late, given, Recipe(constraints), text="every=40,length=15,first=110,effect=thinned:0.5")
@@ -108,7 +109,7 @@ def test_a_feed_that_knows_when_the_next_fix_comes_is_refused(late, given, const
 def test_decisions_taken_from_the_whole_recording_are_refused(
     late, given, constraints, protocol, monkeypatch
 ):
-    monkeypatch.setattr(methods, "decide_before", lambda log, system, outages: decide(log, system))
+    monkeypatch.setattr(recipes, "decide_before", lambda log, system, outages: decide(log, system))
     with pytest.raises(LaboratoryError, match="constraints reads the future"):
         put(late, given, Recipe(constraints), protocols=(protocol,))
 

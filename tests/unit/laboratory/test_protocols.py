@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from gapless.evaluation import score, score_pieces
-from gapless.laboratory.methods import Function, Recipe
+from gapless.laboratory.methods import Function
+from gapless.laboratory.recipes import Recipe
 from gapless.scenarios import Effect, Outage, parse, plan
 from gapless.systems.forks import LEAD, first_touched
 from gapless.systems.fuse import decide_before, fuse, withhold_from
