@@ -56,6 +56,7 @@ def system(grade: str, constraints: bool = False) -> System:
     base = load("constraints" if constraints else "ins")
     gnss = replace(
         base.gnss,
+        wander=0.0,
         position_floor=0.0,
         velocity_floor=0.0,
         position_correlation=0.0,
@@ -109,7 +110,7 @@ def drive(seed: int, grade: str | Grade, duration: float, recipe: System, outage
     for now in epochs(navigator, log):
         errors.append(error(navigator, log))
         # the filter's attitude is that of the sensitive axes, the truth's that of the box
-        box = np.diag(np.repeat([0.0, askew**2], [6, 3]))
+        box = np.diag(np.repeat([0.0, 0.5 * askew**2], [6, 3]))
         covariances.append(navigator.belief.P[:9, :9] + box)
         if outages and now >= FIRST and (now - FIRST) % LENGTH == 0.0 and len(ends) < OUTAGES:
             ends.append(outage(navigator, log, now))

@@ -68,6 +68,7 @@ if TYPE_CHECKING:
     from gapless.systems.fuse import fuse
     from gapless.systems.recipe import System
     from gapless.systems.recipe import load as load_system
+    from gapless.systems.smooth import smooth
     from gapless.systems.vehicle import vehicle_attitude
 
 __version__ = "0.1.0"
@@ -93,6 +94,7 @@ __all__ = [
     "recording_from_frames",
     "score",
     "simulate_drive",
+    "smooth",
     "summarise",
     "to_pandas",
     "vehicle_attitude",
@@ -112,6 +114,7 @@ _HOMES: Final = {
     "solution": ("Decision", "Solution"),
     "systems.fuse": ("fuse",),
     "systems.recipe": ("System", "load_system"),
+    "systems.smooth": ("smooth",),
     "systems.vehicle": ("vehicle_attitude",),
 }
 """Public names by the module that they come from; loaded when first asked for."""

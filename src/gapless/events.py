@@ -8,6 +8,9 @@ import numpy as np
 
 from gapless.recording import Array, Imu
 
+EPS = 1e-6
+"""Times closer than this are the same instant [s]."""
+
 
 class Reading(NamedTuple):
     """One value that a sensor logged.

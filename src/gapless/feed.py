@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from bisect import bisect_left
+from collections.abc import Iterator, Mapping, Sequence
+from operator import itemgetter
 
 import numpy as np
 
-from gapless.events import Event, ImuBlock, Reading
-from gapless.recording import Array, Gnss, Recording
+from gapless.events import EPS, Event, ImuBlock, Reading
+from gapless.recording import Array, Gnss, Imu, Recording
+
+Arrival = tuple[float, tuple[Reading, ...]]
+"""When readings arrive, and which."""
 
 
 def events(
@@ -37,8 +42,46 @@ def events(
     ------
     Event
     """
-    arrivals = _arrivals(recording, offsets, thin, start, end)
-    imu = recording.imu
+    yield from merged(recording.imu, _arrivals(recording, offsets, thin, start, end), start, end)
+
+
+def in_order(recording: Recording, offsets: Mapping[str, float]) -> list[Arrival]:
+    """Readings by the time that they hold for: what only looking back can have.
+
+    Parameters
+    ----------
+    recording : Recording
+    offsets : mapping of str to float
+        As for `events`.
+
+    Returns
+    -------
+    list of (float, (Reading,))
+        For `merged`. None comes after a sample that ends later than it holds, by a rounding error even.
+    """
+    readings = [r for _, together in _arrivals(recording, offsets, 0.0, -np.inf, np.inf) for r in together]
+    return [(r.time - 2.0 * EPS, (r,)) for r in sorted(readings, key=lambda r: r.time)]
+
+
+def merged(
+    imu: Imu, arrivals: Sequence[Arrival], start: float = -np.inf, end: float = np.inf
+) -> Iterator[Event]:
+    """IMU blocks with readings between them.
+
+    Parameters
+    ----------
+    imu : Imu
+    arrivals : sequence of (float, tuple of Reading)
+        Readings and when they arrive [s], in order of that.
+    start, end : float
+        Only what arrived in start <= time < end.
+
+    Yields
+    ------
+    Event
+    """
+    chosen = slice(*(bisect_left(arrivals, t, key=itemgetter(0)) for t in (start, end)))
+    arrivals = arrivals[chosen]
     first, last = (int(k) for k in np.searchsorted(imu.time, [start, end]))
     stops = np.searchsorted(imu.time, [t for t, _ in arrivals])
     for (_, readings), stop in zip(arrivals, np.clip(stops, first, last).tolist(), strict=True):
@@ -52,7 +95,7 @@ def events(
 
 def _arrivals(
     recording: Recording, offsets: Mapping[str, float], thin: float, start: float, end: float
-) -> list[tuple[float, tuple[Reading, ...]]]:
+) -> list[Arrival]:
     found = list(_fixes(recording.gnss, offsets, thin, start, end))
     odometer = recording.odometer
     if odometer is not None:

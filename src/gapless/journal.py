@@ -34,10 +34,17 @@ class Journal:
     Parameters
     ----------
     layout : Layout
+    misalignment : float
+        Standard deviation of the box's axes against the sensors', which no motion shows [rad]. It is
+        part of what is stated for the box: of attitude and mounting angles.
     """
 
-    def __init__(self, layout: Layout) -> None:
+    def __init__(self, layout: Layout, misalignment: float = 0.0) -> None:
         self.layout = layout
+        askew = [layout.blocks[name] for name in ("attitude", "mounting") if name in layout]
+        self._unseen = np.zeros(layout.n)
+        for block in askew:
+            self._unseen[block] = misalignment**2
         cross = [(0, 1), (6, 7), (6, 8), (7, 8)]
         self._kept = np.array([i * ROW + j for i, j in [*((i, i) for i in range(layout.n)), *cross]])
         self.last = -math.inf
@@ -49,7 +56,7 @@ class Journal:
         self.latest: dict[str, float] = {}
         self.alignments: list[tuple[float, str]] = []
 
-    def row(self, time: float, belief: Belief, source: str) -> None:
+    def row(self, time: float, belief: Belief, shared: Array, source: str) -> None:
         """Write the belief down.
 
         Parameters
@@ -57,6 +64,8 @@ class Journal:
         time : float
             [s]
         belief : Belief
+        shared : ndarray, shape (3, 3)
+            Covariance of the position on top of the belief's [m^2].
         source : str
             What holds it.
         """
@@ -65,7 +74,11 @@ class Journal:
         self.last = time
         self.times.append(time)
         self.states.append(belief.estimate().copy())
-        self.variances.append(belief.p[self._kept])
+        variances = belief.p[self._kept]
+        variances[: self.layout.n] += self._unseen
+        variances[:3] += shared.diagonal()
+        variances[self.layout.n] += shared[0, 1]
+        self.variances.append(variances)
         self.sources.append(source)
 
     def innovation(self, channel: str, time: float, z: Array, s: Array, nis: float, factor: float) -> None:

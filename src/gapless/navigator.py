@@ -3,30 +3,27 @@
 from __future__ import annotations
 
 import math
-from itertools import pairwise
 from typing import Any, Self
 
 import numpy as np
 
+from gapless import earth
 from gapless.alignment.coarse import Start
-from gapless.events import Event, ImuBlock, Motion, Reading
+from gapless.events import EPS, Event, ImuBlock, Motion, Reading
+from gapless.filters.consider import Wander
 from gapless.filters.update import assess, correct
 from gapless.inertial import propagate as at
 from gapless.inertial.belief import Belief, inject
-from gapless.inertial.increments import split
 from gapless.inertial.layout import ROW
 from gapless.journal import Journal
 from gapless.measurements.base import Observation
+from gapless.pieces import GAP, pieces, without_holes
 from gapless.settings import Settings
 from gapless.state import Past, State
+from gapless.tape import Tape
 from gapless.units import DEG
 
 __all__ = ["Navigator", "Settings"]
-
-EPS = 1e-6
-"""Times closer than this are the same instant [s]."""
-GAP = 0.5
-"""A longer silence of the IMU is not bridged: it ends in a new alignment [s]."""
 
 
 class Navigator:
@@ -40,16 +37,20 @@ class Navigator:
     ----------
     journal : Journal
         Rows and innovations so far.
+    tape : Tape or None
+        Where a smoother listens; no part of a snapshot.
     """
 
     def __init__(self, settings: Settings) -> None:
         self.settings = settings
-        self.journal = Journal(settings.layout)
+        self.journal = Journal(settings.layout, settings.misalignment)
         belief = Belief(settings.layout, settings.open_loop, settings.trail)
         constraints = {name: c.copy() for name, c in settings.constraints.items()}
-        self._state = State(belief, settings.gate.copy(), constraints, settings.aligner.copy())
+        wander = Wander(settings.wander_time)
+        self._state = State(belief, settings.gate.copy(), constraints, settings.aligner.copy(), wander)
         self._past = Past(settings.lateness)
         self.dropped = 0
+        self.tape: Tape | None = None
 
     @property
     def belief(self) -> Belief:
@@ -168,49 +169,17 @@ class Navigator:
     # --- samples --------------------------------------------------------------------------------
 
     def _feel(self, block: ImuBlock) -> None:
-        """Run through samples that may have gaps between them."""
-        begin = block.time - block.dt
-        cuts = [0, *(np.flatnonzero(begin[1:] - block.time[:-1] > GAP) + 1).tolist(), len(begin)]
-        for first, last in pairwise(cuts):
-            if begin[first] - self._state.clock > GAP:
-                self._gap(float(begin[first]))
-            self._through(block if len(cuts) == 2 else block.rows(first, last))
-
-    def _through(self, block: ImuBlock) -> None:
-        """Run through samples without gaps, stopping wherever a reading waits."""
-        pending, start, n = self._state.pending, 0, len(block.time)
-        while start < n:
-            if not pending or pending[0].time > block.time[-1] + EPS:
-                self._run(block, start, n, False)
-                return
-            due = pending[0].time
-            end = int(np.searchsorted(block.time, due + EPS, side="right"))
-            if end > start:
-                self._run(block, start, end, due <= block.time[end - 1] + EPS)
-                self._apply_due()
-                start = end
-            else:
-                self._cut(block.rows(start, start + 1), due)
-                start += 1
-
-    def _cut(self, sample: ImuBlock, due: float) -> None:
-        """One sample, cut where a reading waits inside it."""
-        memory = self._state.belief.memory
-        dt = float(sample.dt[0])
-        part = dt - (float(sample.time[0]) - due)
-        if part <= EPS:  # held for the instant before the sample began
-            self._apply(self._state.pending.pop(0))
-            self._through(sample)
-            return
-        before = float(memory[at.PREV_DT])
-        parts = []
-        for increment, i in ((sample.dtheta[0], at.PREV_THETA), (sample.dvel[0], at.PREV_VEL)):
-            parts.append(split(increment, memory[i : i + 3], before, dt, part))
-        head = ImuBlock(np.array([due]), np.array([part]), parts[0][None], parts[1][None])
-        tail = ImuBlock(sample.time, np.array([dt - part]), sample.dtheta - parts[0], sample.dvel - parts[1])
-        self._run(head, 0, 1, True)
-        self._apply_due()
-        self._through(tail)
+        """Run through samples, stopping at holes between them and wherever a reading waits."""
+        state = self._state
+        for stretch in without_holes(block):
+            begin = float(stretch.time[0] - stretch.dt[0])
+            if begin - state.clock > GAP:
+                self._gap(begin)
+            for piece in pieces(stretch, state.pending, state.belief.memory):
+                if piece.last > piece.first:
+                    self._run(*piece)
+                if piece.due:
+                    self._apply_due()
 
     def _run(self, block: ImuBlock, first: int, last: int, due: bool) -> None:
         """Propagate samples first..last-1, ticking on the way; `due`: an observation waits there."""
@@ -230,8 +199,12 @@ class Navigator:
                 block.time, block.dt, block.dtheta, block.dvel, first, end, s.period, s.tick, flush,
             )  # fmt: skip
             state.clock = float(block.time[first - 1])
-            b.trail.mark(state.clock, b.v_n)
-            if b.memory[at.TICK_DT] >= s.tick - at.ROUND:
+            if self.tape is not None and b.memory[at.COV_DT] == 0.0:
+                self.tape.stepped(b)
+            ticked = b.memory[at.TICK_DT] >= s.tick - at.ROUND
+            if ticked or (due and first == last):  # never at a block's end: blocks change no bits
+                b.trail.mark(state.clock, b.v_n)
+            if ticked:
                 self._tick()
             elif often:
                 self._row()
@@ -253,6 +226,8 @@ class Navigator:
         state.aligner = self.settings.aligner.copy()
         if state.aligned:
             state.belief.lose_track(begin, begin - state.clock)
+            if self.tape is not None:
+                self.tape.forgot(everything=False)
         state.clock = begin
 
     def _tick(self) -> None:
@@ -270,10 +245,13 @@ class Navigator:
 
     def _row(self) -> None:
         """Write a row where one is due; it changes nothing of the belief."""
-        state, row = self._state, self.settings.row
+        state, often = self._state, self.settings.row
         if state.clock >= state.next_row - EPS:
-            state.next_row = max(state.next_row + row, state.clock + 0.5 * row)
-            self.journal.row(state.clock, state.belief, self._source())
+            state.next_row = max(state.next_row + often, state.clock + 0.5 * often)
+            row = state.clock, state.belief, state.wander.response, self._source()
+            self.journal.row(*row)
+            if self.tape is not None:
+                self.tape.row(*row)
 
     def _source(self) -> str:
         heard, now = self._state.heard, self._state.clock
@@ -296,15 +274,19 @@ class Navigator:
                 b.block(name)[:] = value
             for name in s.layout.blocks:
                 b.set_sd(name, s.initial_sd.get(name, 0.0))
-            if start.gyro_bias is not None:
+            prior = np.asarray(s.initial_sd["gyro_bias"])
+            # the mean rate of a standstill holds the earth's: no news to a gyro that is known better
+            if start.gyro_bias is not None and float(prior.max()) > 2.0 * earth.RATE:
                 b.block("gyro_bias")[:] = start.gyro_bias
-                b.set_sd("gyro_bias", np.minimum(s.initial_sd["gyro_bias"], 0.1 * DEG))
+                b.set_sd("gyro_bias", np.minimum(prior, 0.1 * DEG))
         b.set_sd("position", 2.0 * start.sd_position + 1.0)
         b.set_sd("velocity", start.sd_velocity + 0.5)
         b.set_sd("attitude", np.array([1.0, 1.0, 0.0]) * s.initial_sd["attitude"])
         b.course_heading(start.sd_heading)
         b.memory[:] = 0.0
         b.memory[at.TIME] = state.clock
+        if self.tape is not None:
+            self.tape.forgot(everything=first, course=True)
         state.aligner, state.aligned = None, True
         state.next_row = max(state.next_row, state.clock)
         self.journal.align(state.clock, start.evidence)
@@ -327,7 +309,11 @@ class Navigator:
         elif verdict.factor != 1.0:
             r = o.R * verdict.factor
             s = s + (r - o.R)
+        if self.tape is not None:
+            self.tape.corrected(o.H, hp, s, z)
         dx = correct(b.p, ROW, n, z, o.H, r, s, hp, 1.0)
+        if o.slow is not None:
+            state.wander.hear(time, b.p, ROW, r, o.slow)
         if b.error.size:
             b.error[:n] += dx
         else:

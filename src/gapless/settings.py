@@ -42,6 +42,10 @@ class Settings:
         Time between journal rows [s].
     lateness : float
         How late a reading may arrive and still be put in its place [s].
+    misalignment : float
+        Standard deviation of the box's axes against the sensors' [rad].
+    wander_time : float
+        Correlation time of what a sensor's readings share [s].
     open_loop : bool
         Feed-forward: never correct the nominal state.
     trail : float
@@ -60,5 +64,7 @@ class Settings:
     period: float = 0.05
     row: float = 0.1
     lateness: float = 0.0
+    misalignment: float = 0.0
+    wander_time: float = 60.0
     open_loop: bool = False
     trail: float = 0.0

@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 from gapless.alignment.coarse import Aligner
 from gapless.events import Event, ImuBlock, Reading
 from gapless.filters.adaptation.gate import Gate
+from gapless.filters.consider import Wander
 from gapless.inertial.belief import Belief
 from gapless.measurements.base import Constraint
 
@@ -24,6 +25,8 @@ class State:
     constraints : dict of str to Constraint
     aligner : Aligner or None
         None once there is a heading that is trusted.
+    wander : Wander
+        What the fixes' common error does to the position.
     pending : list of Reading
         Readings that hold for a time still to come, in its order.
     heard : dict of str to float
@@ -40,6 +43,7 @@ class State:
     gate: Gate
     constraints: dict[str, Constraint]
     aligner: Aligner | None
+    wander: Wander
     pending: list[Reading] = field(default_factory=list)
     heard: dict[str, float] = field(default_factory=dict)
     clock: float = -math.inf
@@ -58,6 +62,7 @@ class State:
             self.gate.copy(),
             {name: c.copy() for name, c in self.constraints.items()},
             None if self.aligner is None else self.aligner.copy(),
+            self.wander.copy(),
             list(self.pending),
             dict(self.heard),
             self.clock,

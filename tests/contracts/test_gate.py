@@ -67,13 +67,9 @@ LIES = {
     "slow": {"speed": (1.5, -1.0)},
     "absurd": {"speed": (300.0, 200.0)},
 }
-ABSURD = pytest.mark.xfail(
-    strict=False,
-    reason="five seconds of 360 m/s are believed, the constraints then turn the heading: 170 s to recover",
-)
 
 
-@pytest.mark.parametrize("lie", [*list(LIES)[:-1], pytest.param("absurd", marks=ABSURD)])
+@pytest.mark.parametrize("lie", LIES)
 def test_no_lie_locks_the_truth_out(settled, lie):
     """Ten seconds of fixes that agree on something wrong; 15 s later the truth is back."""
     navigator, log = settled

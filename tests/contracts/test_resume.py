@@ -84,11 +84,6 @@ def test_samples_one_by_one_are_the_block(clock):
     assert belief(live) == belief(whole)
 
 
-@pytest.mark.xfail(
-    strict=True,
-    reason="Navigator._run: Trail.mark at every stop of the kernel, so at every block's end; "
-    "marks at ticks and at readings only would be the same for all blocks",
-)
 def test_samples_one_by_one_are_the_block_for_velocities_that_are_means():
     log = recording("exact", 1.0).slice(-np.inf, 60.0)
     setup = prepared(log, "exact", System(gnss=GnssUse(velocity_averaging=1.0)))

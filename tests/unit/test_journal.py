@@ -10,6 +10,7 @@ from gapless.journal import Journal
 from gapless.units import DEG
 
 LAYOUT = Layout(("gyro_scale",))
+NOTHING = np.zeros((3, 3))
 
 
 def belief(euler, seed=0):
@@ -24,7 +25,7 @@ def belief(euler, seed=0):
 @pytest.mark.parametrize("euler", [(0.0, 0.0, 0.5), (0.2, -0.3, 2.0), (-0.4, 1.1, -2.5)])
 def test_angles_have_the_deviations_of_the_rotations_they_come_from(euler):
     journal, b = Journal(LAYOUT), belief(euler)
-    journal.row(1.0, b, "gnss")
+    journal.row(1.0, b, NOTHING, "gnss")
     said = journal.trajectory().sd[0]
     rng = np.random.default_rng(5)
     phi = rng.multivariate_normal(np.zeros(3), b.P[6:9, 6:9], 20_000)
@@ -41,7 +42,7 @@ def test_angles_have_the_deviations_of_the_rotations_they_come_from(euler):
 def test_a_moment_is_written_once():
     journal, first, second = Journal(LAYOUT), belief((0.0, 0.0, 0.0)), belief((0.1, 0.0, 0.0), 1)
     for t, b in ((1.0, first), (1.1, first), (1.0, second), (1.1, second), (1.2, second)):
-        journal.row(t, b, "ins")
+        journal.row(t, b, NOTHING, "ins")
         journal.innovation("position", t, b.x[:3].copy(), np.eye(3), 1.0, 1.0)
     t = journal.trajectory()
     assert t.time.tolist() == [1.0, 1.1, 1.2]
@@ -51,7 +52,7 @@ def test_a_moment_is_written_once():
 
 def test_what_is_written_does_not_change():
     journal, b = Journal(LAYOUT), belief((0.0, 0.0, 0.0))
-    journal.row(1.0, b, "gnss")
+    journal.row(1.0, b, NOTHING, "gnss")
     b.x[:] = 0.0
     b.p[:] = 0.0
     assert journal.trajectory().lla[0, 0] == 0.6
@@ -60,9 +61,9 @@ def test_what_is_written_does_not_change():
 
 def test_rewinding_forgets_and_a_follower_begins_empty():
     journal, b = Journal(LAYOUT), belief((0.0, 0.0, 0.0))
-    journal.row(1.0, b, "gnss")
+    journal.row(1.0, b, NOTHING, "gnss")
     mark = journal.mark()
-    journal.row(1.1, b, "ins")
+    journal.row(1.1, b, NOTHING, "ins")
     journal.innovation("velocity", 1.1, np.zeros(3), np.eye(3), 1.0, 1.0)
     journal.align(1.1, "again")
     follower = Journal(LAYOUT)
@@ -72,8 +73,8 @@ def test_rewinding_forgets_and_a_follower_begins_empty():
     assert journal.innovations() == {}
     assert journal.alignments == []
     for t in (1.1, 1.2):
-        follower.row(t, b, "ins")
-        journal.row(t, b, "ins")
+        follower.row(t, b, NOTHING, "ins")
+        journal.row(t, b, NOTHING, "ins")
     assert follower.times == [1.2]
     assert journal.times == [1.0, 1.1, 1.2]
 
@@ -81,7 +82,7 @@ def test_rewinding_forgets_and_a_follower_begins_empty():
 def test_blocks_come_by_name():
     journal, b = Journal(LAYOUT), belief((0.0, 0.0, 0.0))
     b.block("gyro_scale")[:] = 0.01, 0.02, 0.03
-    journal.row(1.0, b, "gnss")
+    journal.row(1.0, b, NOTHING, "gnss")
     states, sds = journal.blocks()
     assert set(states) == {"gyro_bias", "accel_bias", "gyro_scale"}
     np.testing.assert_array_equal(states["gyro_scale"], [[0.01, 0.02, 0.03]])
@@ -93,6 +94,25 @@ def test_an_open_loop_error_is_in_the_rows():
     b = Belief(LAYOUT, open_loop=True)
     b.error[3:6] = 1.0, 2.0, 3.0
     journal = Journal(LAYOUT)
-    journal.row(0.5, b, "ins")
+    journal.row(0.5, b, NOTHING, "ins")
     np.testing.assert_array_equal(journal.trajectory().v_n[0], [1.0, 2.0, 3.0])
     assert np.array_equal(b.v_n, np.zeros(3))
+
+
+def test_what_fixes_share_and_what_no_motion_shows_are_stated_on_top():
+    layout = Layout(("mounting",))
+    b = Belief(layout)
+    b.P[:] = np.diag(np.linspace(0.1, 0.9, layout.n)) ** 2
+    b.x[6] = 1.0
+    shared = np.array([[0.5, 0.2, 0.0], [0.2, 0.8, 0.0], [0.0, 0.0, 2.0]])
+    plain, honest = Journal(layout), Journal(layout, 0.3 * DEG)
+    plain.row(1.0, b, NOTHING, "gnss")
+    honest.row(1.0, b, shared, "gnss")
+    before, after = (np.square(j.trajectory().sd[0]) for j in (plain, honest))
+    assert np.allclose(after[:3] - before[:3], np.diag(shared))
+    assert honest.trajectory().horizontal[0] == pytest.approx(0.2)
+    assert np.array_equal(after[3:6], before[3:6])
+    assert np.allclose(after[6:9] - before[6:9], (0.3 * DEG) ** 2)  # level: angles are rotations
+    grown = np.square(honest.blocks()[1]["mounting"]) - np.square(plain.blocks()[1]["mounting"])
+    assert np.allclose(grown, (0.3 * DEG) ** 2)
+    assert np.array_equal(honest.blocks()[1]["gyro_bias"], plain.blocks()[1]["gyro_bias"])

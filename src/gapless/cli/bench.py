@@ -22,7 +22,8 @@ if TYPE_CHECKING:
     default="ins,constraints",
     show_default=True,
     metavar="NAMES",
-    help="Built-in recipes, or TOML files of your own; the others are compared with the first.",
+    help="Built-in recipes (ins, constraints), smoothed (not causal: a bound), or TOML files of your own; "
+    "the others are compared with the first.",
 )
 @click.option(
     "--length", default="10,30,60,120", show_default=True, metavar="SECONDS", help="Lengths of the outages."
@@ -150,10 +151,13 @@ def _sources(
 
 
 def _methods(systems: str) -> Sequence[Method]:
-    from gapless.laboratory.recipes import Recipe
+    from gapless.laboratory.recipes import Recipe, smoothed
     from gapless.systems.recipe import load
 
-    return tuple(Recipe(load(name.strip())) for name in systems.split(","))
+    names = [name.strip() for name in systems.split(",")]
+    return tuple(
+        smoothed(load("constraints")) if name == "smoothed" else Recipe(load(name)) for name in names
+    )
 
 
 def _scenarios(

@@ -46,10 +46,13 @@ def _formats(command: Callable[..., Any]) -> Callable[..., Any]:
     metavar="HZ",
     help="Rows of the solution per second.",
 )
+@click.option(
+    "--smooth", is_flag=True, help="Let what came later correct what came before: for post-processing."
+)
 @click.option("--vehicle", is_flag=True, help="Write the attitude of the car instead of the box's.")
 @_formats
 @click.option("--no-report", is_flag=True, help="Do not write report.html.")
-def fuse(out: Path, rate: float, vehicle: bool, no_report: bool, **rest: Any) -> None:
+def fuse(out: Path, rate: float, smooth: bool, vehicle: bool, no_report: bool, **rest: Any) -> None:
     """Fuse a RECORDING into a trajectory with honest uncertainties.
 
     RECORDING is a folder with imu and gnss logs, or the two text files of a
@@ -61,7 +64,7 @@ def fuse(out: Path, rate: float, vehicle: bool, no_report: bool, **rest: Any) ->
     chosen = [name for name in FORMATS if rest.pop(name)]
     check_folder(out)
     work = job(**rest)
-    solution, scores = _navigate(work, rate)
+    solution, scores = _navigate(work, rate, smooth)
     if vehicle:
         from gapless.systems.vehicle import vehicle_attitude
 
@@ -78,17 +81,23 @@ def fuse(out: Path, rate: float, vehicle: bool, no_report: bool, **rest: Any) ->
     click.echo("\n".join([*summary_lines(summary), "", *(f"wrote {out / name}" for name in files)]))
 
 
-def _navigate(work: Job, rate: float) -> tuple[Solution, Scores | None]:
+def _navigate(work: Job, rate: float, smooth: bool) -> tuple[Solution, Scores | None]:
     """Solution, and scores where there is something to score it against."""
     from gapless.cli.progress import progress
     from gapless.errors import ConfigError
     from gapless.systems.fuse import fuse
+    from gapless.systems.smooth import smooth as smoothed
 
     most = work.recording.imu.rate
     if rate > most * 1.01:
         raise ConfigError(f"--rate {rate:g}: the IMU has {most:.4g} samples a second; ask for no more")
+    if smooth and work.causal:
+        raise ConfigError("--smooth looks back and --causal never ahead; give one of them")
     with progress("fusing", work.recording.duration) as tell:
-        solution = fuse(work.recording, work.system, work.outages, rate, work.causal, tell)
+        if smooth:
+            solution = smoothed(work.recording, work.system, work.outages, rate, tell)
+        else:
+            solution = fuse(work.recording, work.system, work.outages, rate, work.causal, tell)
     if work.recording.reference is None and not work.outages:
         return solution, None
 

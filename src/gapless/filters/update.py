@@ -39,8 +39,15 @@ def cholesky(s: Array) -> Array:
 
 
 @inline
-def _solve(low: Array, b: Any) -> None:
-    """B = S^-1 b in place, S = L L'."""
+def solve(low: Array, b: Any) -> None:
+    """B = S^-1 b in place.
+
+    Parameters
+    ----------
+    low : ndarray, shape (m, m)
+        L of S = L L'.
+    b : ndarray, shape (m,)
+    """
     m = low.shape[0]
     for i in range(m):
         a = b[i]
@@ -94,7 +101,7 @@ def assess(p: Array, row: int, n: int, z: Array, h: Array, r: Array) -> tuple[fl
                 for i in range(m):
                     s[i, q] += hp[i, c] * a
     y = z.copy()
-    _solve(cholesky(s), y)
+    solve(cholesky(s), y)
     nis = 0.0
     for i in range(m):
         nis += z[i] * y[i]
@@ -133,7 +140,7 @@ def correct(
     m = h.shape[0]
     low, k, dx = cholesky(s), hp.copy(), np.zeros(n)
     for j in range(n):
-        _solve(low, k[:, j])
+        solve(low, k[:, j])
         for q in range(m):
             k[q, j] *= gain
             dx[j] += k[q, j] * z[q]

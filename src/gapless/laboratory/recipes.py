@@ -10,16 +10,18 @@ from typing import Final
 import numpy as np
 
 from gapless.feed import events
-from gapless.laboratory.methods import Run
+from gapless.laboratory.methods import Function, Run
 from gapless.laboratory.prefix import Peek, first_difference, from_the_start, samples, spoil
 from gapless.recording import Recording
 from gapless.scenarios import Outage
 from gapless.solution import Solution
+from gapless.systems.adjust import graded
 from gapless.systems.build import stamps
 from gapless.systems.decide import Decided
 from gapless.systems.forks import piece, run_with_forks
 from gapless.systems.fuse import DECISIONS_TAKEN_LATE, decide_before, fold, withhold_from
 from gapless.systems.recipe import System
+from gapless.systems.smooth import smooth
 
 RATE: Final = 10.0
 """Rows of a solution per second."""
@@ -129,19 +131,43 @@ class Recipe:
         self, planned: tuple[Outage, ...], recording: Recording, through: tuple[Outage, ...]
     ) -> Solution:
         """Decide and navigate with nothing kept from earlier runs."""
-        decided = decide_before(withhold_from(recording, planned), self.system, planned)
+        decided = self._decide(recording, planned)
         return run_with_forks(recording, self.system, through, (), decided, RATE)[0]
 
     def _decided(self, recording: Recording, outages: tuple[Outage, ...]) -> Decided:
         """What is decided before the first outage depends on no other, nor on how long that one is."""
         if not outages:
-            return decide_before(recording, self.system, ())
+            return self._decide(recording, ())
         first = min(outages)
         keys = (recording.name, first.start, first.effect), (recording.name, outages)
         for key in keys:
             if key in self._known:
                 return self._known[key]
-        decided = decide_before(withhold_from(recording, outages), self.system, outages)
+        decided = self._decide(recording, outages)
         late = any(d.name == DECISIONS_TAKEN_LATE for d in decided.decisions)
         self._known[keys[late]] = decided
         return decided
+
+    def _decide(self, recording: Recording, outages: tuple[Outage, ...]) -> Decided:
+        system = graded(self.system, recording)
+        return decide_before(withhold_from(recording, outages), system, outages)
+
+
+def smoothed(system: System) -> Function:
+    """The bound that no real-time system passes: a recipe's filter, corrected by all that came later.
+
+    Parameters
+    ----------
+    system : System
+
+    Returns
+    -------
+    Function
+        Declared not causal, with a run for each isolated outage.
+    """
+    what = f"{system.name}, then smoothed over the whole recording: not a real-time result"
+    return Function("smoothed", what, False, partial(_smooth, system))
+
+
+def _smooth(system: System, recording: Recording, outages: tuple[Outage, ...]) -> Solution:
+    return smooth(recording, system, outages, RATE)

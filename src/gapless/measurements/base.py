@@ -18,11 +18,14 @@ class Observation(NamedTuple):
         Observed minus predicted.
     H : ndarray, shape (m, n)
     R : ndarray, shape (m, m)
+    slow : ndarray, shape (m,), optional
+        Standard deviation of the part of the error that many readings share, which R takes for noise.
     """
 
     z: Array
     H: Array
     R: Array
+    slow: Array | None = None
 
 
 class Sensor(Protocol):

@@ -187,20 +187,23 @@ class Position:
     jitter : float
         Standard deviation of its time stamps [s]: along the track, a fix is as wrong as the
         vehicle is fast.
+    wander : float
+        Share of the standard deviation that many fixes have in common.
     """
 
     lever: Array = field(default_factory=lambda: np.zeros(3))
     correlation: float = 0.25
     floor: float = 0.0
     jitter: float = 0.02
+    wander: float = 0.0
 
     def observe(self, belief: Belief, reading: Reading) -> Observation:
         """Observation of the antenna's position; see `Sensor.observe`."""
-        layout = belief.layout
-        sd = np.maximum(reading.sd, self.floor) * _share(self.correlation, reading.interval)
-        return Observation(
-            *position(belief.estimate(), layout.offsets, layout.n, self.lever, self.jitter, reading.value, sd)
-        )
+        layout, x = belief.layout, belief.estimate()
+        sd = np.maximum(reading.sd, self.floor)
+        noise = sd * _share(self.correlation, reading.interval)
+        z, h, r = position(x, layout.offsets, layout.n, self.lever, self.jitter, reading.value, noise)
+        return Observation(z, h, r, self.wander * sd)
 
 
 @dataclass(frozen=True)

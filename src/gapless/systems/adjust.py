@@ -8,6 +8,8 @@ import msgspec
 from msgspec.structs import replace
 
 from gapless.errors import ConfigError
+from gapless.recording import Recording
+from gapless.sensors import grade_names
 from gapless.systems.recipe import Clock, Offset, System
 
 
@@ -74,6 +76,33 @@ def with_clock(system: System, channel: str, offset: float) -> System:
     except msgspec.ValidationError as error:
         raise ConfigError(f"clock offset of {channel}, {offset:g} s: {error}") from None
     return replace(system, clock=replace(system.clock, **{channel: told}))
+
+
+def graded(system: System, recording: Recording) -> System:
+    """A system that knows the sensor's grade where the recording states it and the recipe does not.
+
+    Parameters
+    ----------
+    system : System
+    recording : Recording
+
+    Returns
+    -------
+    System
+
+    Raises
+    ------
+    ConfigError
+        If the recording states a grade that is not known.
+    """
+    if system.imu.grade or recording.grade is None:
+        return system
+    if recording.grade not in grade_names():
+        raise ConfigError(
+            f"{recording.name}: no sensor grade {recording.grade!r}; "
+            f"state one of {', '.join(grade_names())}, or none"
+        )
+    return replace(system, imu=replace(system.imu, grade=recording.grade))
 
 
 def _choices(field: str) -> tuple[str, ...]:

@@ -79,6 +79,8 @@ def settings(
         row=row,
         lateness=_lateness(stamps(system, offsets)),
         trail=1.5 * system.gnss.velocity_averaging + 0.2 if system.gnss.velocity_averaging else 0.0,
+        misalignment=float(imu["misalignment"]),
+        wander_time=system.gnss.wander_time,
         open_loop=system.filter.correction == "feedforward",
     )
 
@@ -137,12 +139,14 @@ def budget(imu: Imu, gyro_density: float = 0.0) -> dict[str, Array]:
     Returns
     -------
     dict of str to ndarray
-        "noise" as `propagate` takes it, then the standard deviations of the turn-on errors.
+        "noise" as `propagate` takes it, then the standard deviations of the turn-on errors, and
+        "misalignment".
     """
     if not imu.grade:
         gyro_noise = math.hypot(imu.gyro_noise * DEG, imu.vibration * gyro_density)
         noise = [gyro_noise, imu.accel_noise, imu.gyro_walk * DEG, imu.accel_walk, imu.turn]
         bias = (imu.gyro_bias_sd * DEG, imu.accel_bias_sd, imu.gyro_scale_sd, imu.accel_scale_sd)
+        askew = imu.misalignment * DEG
     else:
         g = grade(imu.grade)
         # what moves in run is a random walk with the same power over the correlation time
@@ -150,6 +154,8 @@ def budget(imu: Imu, gyro_density: float = 0.0) -> dict[str, Array]:
         accel = math.hypot(g.accel_walk, g.accel_instability * math.sqrt(2.0 / g.accel_instability_tau))
         # a gyro askew turns with every turn; over one of some five seconds that looks like noise
         turn = g.misalignment_sd * math.sqrt(TURN)
+        # of six angles between the axes, each pair's half difference turns the whole triad
+        askew = g.misalignment_sd / math.sqrt(2.0)
         noise = [g.gyro_noise, g.accel_noise, gyro, accel, turn]
         bias = (
             math.hypot(g.gyro_bias_sd, g.gyro_instability),
@@ -159,6 +165,7 @@ def budget(imu: Imu, gyro_density: float = 0.0) -> dict[str, Array]:
         )
     names = ("gyro_bias_sd", "accel_bias_sd", "gyro_scale_sd", "accel_scale_sd")
     found = {name: np.asarray(value) for name, value in zip(names, bias, strict=True)}
+    found["misalignment"] = np.asarray(askew)
     return found | {"noise": np.array([*np.square(noise), 0.0, 0.0])}
 
 
@@ -191,7 +198,7 @@ def lever_arm(system: System, recording: Recording) -> Array:
 def _sensors(system: System, recording: Recording, angles: Array) -> dict[str, Sensor]:
     lever, use, wheel = lever_arm(system, recording), system.gnss, system.odometer
     known: dict[str, Sensor] = {
-        "position": Position(lever, use.position_correlation, use.position_floor, use.jitter),
+        "position": Position(lever, use.position_correlation, use.position_floor, use.jitter, use.wander),
         "velocity": Velocity(
             lever, use.velocity_correlation, use.velocity_floor, use.jitter, use.velocity_averaging
         ),

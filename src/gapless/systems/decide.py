@@ -91,7 +91,7 @@ def decide(recording: Recording, system: System, horizon: float = np.inf) -> Dec
     passes = _FirstPass(past, system)
     passes.run()
     decisions = (
-        noise_decision(system, passes.density),
+        noise_decision(system, passes.density, stated=recording.grade),
         *passes.clock_decisions(),
         *passes.mounting_decisions(),
     )
@@ -117,7 +117,7 @@ class _FirstPass:
         """Up to six passes; each starts from the offsets of the one before."""
         for jitter in JITTER:
             navigator = self._navigate(jitter)
-            if len(navigator.journal.times) < 300:
+            if len(navigator.journal.times) < 150:  # half a minute
                 return
             if self._learn(navigator) < SETTLED:
                 return
@@ -131,7 +131,7 @@ class _FirstPass:
         coarse = replace(self.system.filter, tick=0.2)
         system = replace(self.system, gnss=gnss, filter=coarse, sensors=sensors)
         navigator = Navigator(
-            settings(system, self.past, self.offsets, _given_mounting(system), self.density)
+            settings(system, self.past, self.offsets, _given_mounting(system), self.density, coarse.tick)
         )
         for event in events(self.past, stamps(system, self.offsets), thin=0.45):
             navigator.step(event)
@@ -247,7 +247,7 @@ def static_decisions(recording: Recording, system: System) -> list[Decision]:
     return [*found, Decision("antenna lever arm", lever, "m", "default", "none is stated; taken as zero")]
 
 
-def noise_decision(system: System, density: float) -> Decision:
+def noise_decision(system: System, density: float, stated: str | None = None) -> Decision:
     """Process noise of the gyros, the part of it that vibration decides.
 
     Parameters
@@ -255,6 +255,8 @@ def noise_decision(system: System, density: float) -> Decision:
     system : System
     density : float
         What the log's gyros show of vibration [rad/sqrt(s)].
+    stated : str, optional
+        Grade that the recording states.
 
     Returns
     -------
@@ -264,7 +266,8 @@ def noise_decision(system: System, density: float) -> Decision:
     value = round(float(np.sqrt(budget(imu, density)["noise"][0])) / DEG, 4)
     unit = "deg/sqrt(s)"
     if imu.grade:
-        return Decision(name, value, unit, "user", f"grade {imu.grade}")
+        source = "recording" if imu.grade == stated else "user"
+        return Decision(name, value, unit, source, f"grade {imu.grade}")
     floor = f"{imu.gyro_noise:g} for consumer MEMS (biases up to 0.5 m/s^2 and 0.3 deg/s)"
     if density == 0.0 or imu.vibration == 0.0:
         return Decision(name, value, unit, "default", floor)

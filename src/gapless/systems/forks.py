@@ -17,6 +17,7 @@ from gapless.navigator import Navigator
 from gapless.recording import Recording, Trajectory
 from gapless.scenarios import Outage
 from gapless.solution import Solution
+from gapless.systems.adjust import graded
 from gapless.systems.build import stamps
 from gapless.systems.decide import Decided
 from gapless.systems.fuse import collect, fold, settings_for, withhold_from
@@ -74,7 +75,7 @@ def run_with_forks(
     forks : tuple of Fork
         In order of time; an outage that begins after the last sample has none.
     """
-    through = tuple(through)
+    system, through = graded(system, recording), tuple(through)
     fed, late = withhold_from(recording, through), stamps(system, decided.offsets)
     navigator = Navigator(settings_for(recording, system, decided, rate))
     last = float(recording.imu.time[-1])

@@ -15,6 +15,7 @@ from gapless.navigator import Navigator, Settings
 from gapless.recording import Recording
 from gapless.scenarios import Outage, withhold
 from gapless.solution import Decision, Solution
+from gapless.systems.adjust import graded
 from gapless.systems.build import settings, stamps
 from gapless.systems.decide import Decided, decide, static_decisions
 from gapless.systems.recipe import System
@@ -62,7 +63,7 @@ def fuse(
     AlignmentError
         If the vehicle never moved fast enough for a heading.
     """
-    system = System() if system is None else system
+    system = graded(System() if system is None else system, recording)
     outages = tuple(outages)
     open_sky = withhold_from(recording, outages)
     if causal:
@@ -191,7 +192,7 @@ def collect(
     navigator: Navigator,
     decided: Decided,
 ) -> Solution:
-    """What a navigator found, with the decisions behind it.
+    """What a navigator that has come to the end found.
 
     Parameters
     ----------
@@ -199,7 +200,6 @@ def collect(
     system : System
     outages : tuple of Outage
     navigator : Navigator
-        At the end of its run.
     decided : Decided
 
     Returns
@@ -209,7 +209,7 @@ def collect(
     Raises
     ------
     AlignmentError
-        If there never was a heading.
+        If there was never a heading to start from.
     """
     journal = navigator.journal
     if not journal.times:

@@ -28,7 +28,8 @@ class Imu(Struct, forbid_unknown_fields=True, frozen=True):
 
     Densities are per axis: degrees and m/s per root second; random walks of the biases in
     deg/s and m/s^2 per root second; `turn` is the share of a turn that goes wrong; `vibration` is
-    the share of the log's own high-frequency gyro density that is added to `gyro_noise`.
+    the share of the log's own high-frequency gyro density that is added to `gyro_noise`;
+    `misalignment` is how far the box's axes may be from the sensors' (deg).
     """
 
     grade: str = ""
@@ -40,6 +41,7 @@ class Imu(Struct, forbid_unknown_fields=True, frozen=True):
     turn: NonNegative = 0.0012
     gyro_bias_sd: Positive = 0.3
     accel_bias_sd: Positive = 0.4
+    misalignment: NonNegative = 0.3
     gyro_scale_sd: NonNegative = 0.008
     accel_scale_sd: NonNegative = 0.005
     gravity_sd: NonNegative = 5e-4
@@ -57,11 +59,14 @@ class Filter(Struct, forbid_unknown_fields=True, frozen=True):
 class GnssUse(Struct, forbid_unknown_fields=True, frozen=True):
     """How far the receiver's own standard deviations are believed; correlation times of its errors.
 
-    `velocity_averaging` is the length of the epoch that a velocity is the mean of [s], 0 for an
-    instant; the clock offset stays the equivalent instantaneous one. `jitter` is how uneven stamps
-    are [s].
+    `wander` is the share of a position's standard deviation that is not noise but lasts for about
+    `wander_time` [s]; it widens what is stated, not what is weighed. `velocity_averaging` is the
+    length of the epoch that a velocity is the mean of [s], 0 for an instant; the clock offset stays
+    the equivalent instantaneous one. `jitter` is how uneven stamps are [s].
     """
 
+    wander: Annotated[float, Meta(ge=0.0, le=1.0)] = 0.6
+    wander_time: Positive = 60.0
     position_floor: NonNegative = 0.02
     velocity_floor: NonNegative = 0.1
     position_correlation: NonNegative = 0.25

@@ -113,3 +113,17 @@ def test_vehicle_turns_the_box_into_the_car(shell, drive, tmp_path, run):
 def test_clock_is_told(shell, drive):
     said = shell("inspect", drive, "--clock", "velocity=0.05").stdout
     assert "clock offset, velocity: 0.05 s (user: given in the configuration)" in said
+
+
+def test_smoothing_looks_back(drive, tmp_path):
+    result = Shell()("fuse", drive, "--smooth", "--no-report", "--out", tmp_path / "smooth")
+    assert "smoothing" in result.output
+    assert json.loads((tmp_path / "smooth" / "summary.json").read_text("utf-8"))["system"].endswith(
+        "smoothed"
+    )
+
+
+def test_smoothing_and_causality_exclude_each_other(drive, tmp_path):
+    result = Shell()("fuse", drive, "--smooth", "--causal", "--out", tmp_path / "both", code=2)
+    assert "give one of them" in result.output
+    assert not (tmp_path / "both").exists()

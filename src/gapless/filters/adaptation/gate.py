@@ -62,17 +62,20 @@ class Gate:
         Seconds without an accepted observation after which two that agree are believed.
     patience : float
         Seconds of agreement after which they are believed in any case.
-    large : dict of str to float
+    large : dict of str to (float, float)
         By channel: how large the disagreement must be to suspect the filter without a gap
         (smaller ones are left to the inflated R: a fix that is a few metres wrong for some
-        seconds is common, a filter that is 30 m wrong beside good fixes is not).
+        seconds is common, a filter that is 30 m wrong beside good fixes is not), and beyond what
+        it is the reading that is absurd (no filter beside good fixes is 60 m/s wrong).
     """
 
     hard: float = 1e3
     slope: float = 1.5
     gap: float = 5.0
     patience: float = 5.0
-    large: dict[str, float] = field(default_factory=lambda: {"position": 30.0, "velocity": 3.0})
+    large: dict[str, tuple[float, float]] = field(
+        default_factory=lambda: {"position": (30.0, math.inf), "velocity": (3.0, 60.0)}
+    )
     accepted: dict[str, float] = field(default_factory=dict)
     runs: dict[str, _Run] = field(default_factory=dict)
 
@@ -128,8 +131,12 @@ class Gate:
             return False
         if run.after_gap:
             return run.length >= 2 and run.last - run.start >= 0.5
-        large = float(np.linalg.norm(z[:2])) > self.large[channel]
-        return large and run.length >= 4 and run.last - run.start >= self.patience
+        least, most = self.large[channel]
+        return (
+            least < float(np.linalg.norm(z[:2])) < most
+            and run.length >= 4
+            and run.last - run.start >= self.patience
+        )
 
     def copy(self) -> Self:
         """An independent copy.

@@ -1,0 +1,103 @@
+"""Samples in pieces: cut at holes in the log, and inside a sample wherever a reading waits."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from itertools import pairwise
+from typing import NamedTuple
+
+import numpy as np
+
+from gapless.events import EPS, ImuBlock, Reading
+from gapless.inertial import propagate as at
+from gapless.inertial.increments import split
+from gapless.recording import Array
+
+GAP = 0.5
+"""A longer silence of the IMU is not bridged: it ends in a new alignment [s]."""
+
+
+class Piece(NamedTuple):
+    """Samples first..last-1 of a block, none of them if a reading waits at the instant before.
+
+    Parameters
+    ----------
+    block : ImuBlock
+    first, last : int
+    due : bool
+        Whether a reading waits at the end.
+    """
+
+    block: ImuBlock
+    first: int
+    last: int
+    due: bool
+
+
+def without_holes(block: ImuBlock) -> Iterator[ImuBlock]:
+    """The stretches of a block that have no hole longer than `GAP` inside.
+
+    Parameters
+    ----------
+    block : ImuBlock
+
+    Yields
+    ------
+    ImuBlock
+    """
+    begin = block.time - block.dt
+    holes = np.flatnonzero(begin[1:] - block.time[:-1] > GAP) + 1
+    if not len(holes):
+        yield block
+        return
+    for first, last in pairwise([0, *holes.tolist(), len(begin)]):
+        yield block.rows(first, last)
+
+
+def pieces(block: ImuBlock, pending: Sequence[Reading], memory: Array) -> Iterator[Piece]:
+    """A block in pieces that end where readings are due.
+
+    Parameters
+    ----------
+    block : ImuBlock
+        Without holes.
+    pending : sequence of Reading
+        In the order of their times; looked at anew after each piece, for whoever takes the pieces
+        takes the readings too.
+    memory : ndarray
+        What the sample before a cut left behind, as `propagate` keeps it.
+
+    Yields
+    ------
+    Piece
+    """
+    start, n = 0, len(block.time)
+    while start < n:
+        if not pending or pending[0].time > block.time[-1] + EPS:
+            yield Piece(block, start, n, False)
+            return
+        due = pending[0].time
+        end = int(np.searchsorted(block.time, due + EPS, side="right"))
+        if end > start:
+            yield Piece(block, start, end, due <= block.time[end - 1] + EPS)
+            start = end
+            continue
+        part = float(block.dt[start]) - (float(block.time[start]) - due)
+        if part <= EPS:  # it holds for the instant before the sample began
+            yield Piece(block, start, start, True)
+            continue
+        head, tail = _cut(block.rows(start, start + 1), due, part, memory)
+        yield Piece(head, 0, 1, True)
+        yield from pieces(tail, pending, memory)
+        start += 1
+
+
+def _cut(sample: ImuBlock, due: float, part: float, memory: Array) -> tuple[ImuBlock, ImuBlock]:
+    """One sample as two, the first of length `part`."""
+    dt, before = float(sample.dt[0]), float(memory[at.PREV_DT])
+    firsts = []
+    for increment, i in ((sample.dtheta[0], at.PREV_THETA), (sample.dvel[0], at.PREV_VEL)):
+        firsts.append(split(increment, memory[i : i + 3], before, dt, part))
+    head = ImuBlock(np.array([due]), np.array([part]), firsts[0][None], firsts[1][None])
+    rest = sample.dtheta - firsts[0], sample.dvel - firsts[1]
+    return head, ImuBlock(sample.time, np.array([dt - part]), *rest)
