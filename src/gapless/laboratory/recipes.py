@@ -15,7 +15,6 @@ from gapless.laboratory.prefix import Peek, first_difference, from_the_start, sa
 from gapless.recording import Recording
 from gapless.scenarios import Outage
 from gapless.solution import Solution
-from gapless.systems.adjust import graded
 from gapless.systems.build import stamps
 from gapless.systems.decide import Decided
 from gapless.systems.forks import piece, run_with_forks
@@ -131,26 +130,22 @@ class Recipe:
         self, planned: tuple[Outage, ...], recording: Recording, through: tuple[Outage, ...]
     ) -> Solution:
         """Decide and navigate with nothing kept from earlier runs."""
-        decided = self._decide(recording, planned)
+        decided = decide_before(withhold_from(recording, planned), self.system, planned)
         return run_with_forks(recording, self.system, through, (), decided, RATE)[0]
 
     def _decided(self, recording: Recording, outages: tuple[Outage, ...]) -> Decided:
         """What is decided before the first outage depends on no other, nor on how long that one is."""
         if not outages:
-            return self._decide(recording, ())
+            return decide_before(recording, self.system, ())
         first = min(outages)
         keys = (recording.name, first.start, first.effect), (recording.name, outages)
         for key in keys:
             if key in self._known:
                 return self._known[key]
-        decided = self._decide(recording, outages)
+        decided = decide_before(withhold_from(recording, outages), self.system, outages)
         late = any(d.name == DECISIONS_TAKEN_LATE for d in decided.decisions)
         self._known[keys[late]] = decided
         return decided
-
-    def _decide(self, recording: Recording, outages: tuple[Outage, ...]) -> Decided:
-        system = graded(self.system, recording)
-        return decide_before(withhold_from(recording, outages), system, outages)
 
 
 def smoothed(system: System) -> Function:

@@ -92,6 +92,7 @@ def decide_before(open_sky: Recording, system: System, outages: tuple[Outage, ..
     -------
     Decided
     """
+    system = graded(system, open_sky)
     horizons = [open_sky.start + start for start in sorted(o.start for o in outages)] or [np.inf]
     for horizon in horizons:
         decided = decide(open_sky, system, horizon)
