@@ -62,6 +62,26 @@ def samples(rows: Trajectory, outage: Outage, start: float, rng: np.random.Gener
     return tuple(float(inside[k]) for k in sorted(chosen))
 
 
+def known_at(recording: Recording, time: float) -> float:
+    """Where to cut a recording so that a row can just be written.
+
+    Parameters
+    ----------
+    recording : Recording
+    time : float
+        Of the row [s].
+
+    Returns
+    -------
+    float
+        [s] just after the stamp of the IMU sample in which the row lies. As a rule the row lies at its
+        very end; where a reading cuts a sample in two, a row may lie at the cut.
+    """
+    stamps = recording.imu.time
+    k = min(int(np.searchsorted(stamps, time)), len(stamps) - 1)
+    return float(np.nextafter(max(stamps[k], time), np.inf))
+
+
 def spoil(recording: Recording, outages: Sequence[Outage], rng: np.random.Generator) -> Recording:
     """The recording with nonsense in place of all that the outages withhold, and without its reference.
 
@@ -158,5 +178,5 @@ def from_the_start(
     float or None
         [s]
     """
-    cut = spoil(recording, outages, rng).slice(-np.inf, float(np.nextafter(time, np.inf)))
+    cut = spoil(recording, outages, rng).slice(-np.inf, known_at(recording, time))
     return first_difference(rows, run(cut, outages).trajectory, -np.inf, (time,))

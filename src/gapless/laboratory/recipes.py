@@ -11,7 +11,7 @@ import numpy as np
 
 from gapless.feed import events
 from gapless.laboratory.methods import Function, Run
-from gapless.laboratory.prefix import Peek, first_difference, from_the_start, samples, spoil
+from gapless.laboratory.prefix import Peek, first_difference, from_the_start, known_at, samples, spoil
 from gapless.recording import Recording
 from gapless.scenarios import Outage
 from gapless.solution import Solution
@@ -113,7 +113,7 @@ class Recipe:
             spoilt = spoil(recording, gone, rng)
             navigator, previous = fork.navigator.fork(), fork.begin
             for time in times:
-                cut = float(np.nextafter(time, np.inf))
+                cut = known_at(recording, time)
                 left = withhold_from(spoilt.slice(-np.inf, cut), gone)
                 fold(navigator, events(left, late, previous, cut), recording.start)
                 previous = cut

@@ -86,12 +86,16 @@ def test_two_processes_give_the_rows_of_one(bench, shell, drive, tmp_path):
 
 
 def test_simulated_drives(shell, tmp_path):
-    words = ("--simulated", "urban", "--runs", 2, "--duration", 130, "--systems", "constraints", "--jobs", 1)
+    words = ("--simulated", "urban", "--runs", 2, "--duration", 130, "--jobs", 1)
+    words += ("--systems", "constraints,smoothed")
     said = shell("bench", *words, "--plan", "100:115", "--out", tmp_path / "out").output
     assert "passes" in said
     told = json.loads((tmp_path / "out" / "bench.json").read_text())
     assert [r["name"] for r in told["recordings"]] == ["urban-consumer-0001", "urban-consumer-0002"]
     assert all(r["truth"] == "reference" for r in told["recordings"])
+    assert {s["name"]: s["causal"] for s in told["systems"]} == {"constraints": True, "smoothed": False}
+    assert set(told["prefix"]["smoothed"].values()) == {"declared not causal; not checked"}
+    assert "smoothed*" in said
 
 
 @pytest.mark.parametrize(

@@ -16,6 +16,8 @@ from gapless.laboratory.study import scenario
 from gapless.motion import displace
 from gapless.recording import Trajectory
 from gapless.reports import summarise
+from gapless.scenarios import plan
+from gapless.simulate import WheelSensor, simulate
 from gapless.solution import Solution
 from gapless.systems import forks
 from gapless.systems.decide import decide
@@ -32,6 +34,16 @@ def test_an_honest_recipe_is_let_through(either, given, constraints):
     outcome = put(either, given, Recipe(constraints))
     assert outcome.checks == {"constraints": "held in 6 outages"}
     assert len(outcome.outages) == 6
+
+
+def test_rows_at_which_a_reading_cuts_a_sample_are_no_peek(given, constraints):
+    """Eight IMU samples a second and a wheel sensor between them: rows lie where its readings cut samples."""
+    wheels = WheelSensor(rate=10.0, delay=-0.263)
+    log = simulate("urban", "tactical", 200.0, 6, rate=8.0, wheels=wheels)
+    rows = fuse(log, constraints, plan([PLAN], log)).trajectory
+    assert np.mean(np.isin(rows.time, log.imu.time)) < 0.9
+    outcome = put(log, given, Recipe(constraints))
+    assert outcome.checks == {"constraints": "held in 4 outages"}
 
 
 def test_an_honest_function_is_let_through(late, given, honest):
