@@ -87,6 +87,12 @@ def test_spikes_are_the_last_fix_before_and_the_first_three_after(steady):
     np.testing.assert_allclose(jumped[199:203], 50.0, atol=1e-3)  # m, second order of the displacement
 
 
+def test_an_outage_that_the_log_has_not_come_to_touches_nothing(steady):
+    early = steady.gnss.slice(0.0, START + 60.0)
+    for kind in sorted(set(KINDS) - {"real"}):
+        np.testing.assert_array_equal(struck(early, f"80:100,effect={kind}").lla, early.lla)
+
+
 def test_a_fix_that_returns_wrong_stays_wrong_for_ten_seconds(steady):
     found = struck(steady.gnss, "20:100,effect=wrong")
     kept = steady.gnss.take(np.r_[0:200, 1000:1200])

@@ -18,6 +18,8 @@ _PER_SECOND: Final = 0.1
 """A velocity goes wrong by this many m/s for each metre of its position."""
 _SPIKES_AFTER: Final = 3
 """Fixes after an outage that are spikes."""
+_JUST_BEFORE: Final = 2.0
+"""An older fix [s] is not the last before an outage: the log may only not have come to it yet."""
 WRONG_FOR: Final = 10.0
 """How long a fix that returns wrong stays so [s]."""
 
@@ -140,7 +142,7 @@ def _spiked(gnss: Gnss, begin: float, end: float, size: float, rng: Generator) -
     first, after = np.searchsorted(gnss.time, [begin, end])
     back = np.arange(after, min(after + _SPIKES_AFTER, len(gnss)))
     struck = _moved(gnss, back, jumps[1 : 1 + len(back)])
-    if first > 0:
+    if first > 0 and begin - gnss.time[first - 1] <= _JUST_BEFORE:
         struck = _moved(struck, np.array([first - 1]), jumps[:1])
     return _silent(struck, begin, end, size, rng)
 

@@ -36,6 +36,14 @@ def test_an_honest_recipe_is_let_through(either, given, constraints):
     assert len(outcome.outages) == 6
 
 
+@pytest.mark.parametrize("effect", ["noisy", "thinned:0.5", "velocity", "spiked", "wrong"])
+def test_degraded_fixes_that_arrived_may_be_used(late, given, constraints, effect):
+    outcome = put(late, given, Recipe(constraints), text=f"{PLAN},effect={effect}")
+    assert outcome.checks == {"constraints": "held in 6 outages"}
+    ends = {row["end"] - row["start"] for row in outcome.outages}
+    assert ends == {{"spiked": 20.0, "wrong": 25.0}.get(effect, 15.0)}
+
+
 def test_rows_at_which_a_reading_cuts_a_sample_are_no_peek(given, constraints):
     """Eight IMU samples a second and a wheel sensor between them: rows lie where its readings cut samples."""
     wheels = WheelSensor(rate=10.0, delay=-0.263)
