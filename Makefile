@@ -6,7 +6,7 @@ BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip --quiet --disable-pip-version-check
 DEMO := out/demo
 
-.PHONY: demo test bench docs clean
+.PHONY: demo test browser bench docs clean
 
 demo: $(VENV)/.run  ## simulate a drive and fuse it through three outages
 	@mkdir -p $(DEMO)
@@ -17,16 +17,24 @@ demo: $(VENV)/.run  ## simulate a drive and fuse it through three outages
 	@echo
 	@echo "Open this in a browser: $(CURDIR)/$(DEMO)/report.html"
 
-test: $(VENV)/.dev  ## lint, types, floors, tests
+test: $(VENV)/.dev browser  ## lint, types, floors, tests
 	$(BIN)/ruff check
 	$(BIN)/ruff format --check
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 	$(BIN)/pytest -n 2
 
+browser:  ## a Chromium for the tests of pages: found, or installed where that is allowed; without one they skip
+	@for name in "$$GAPLESS_CHROMIUM" chromium chromium-browser google-chrome chrome; do \
+	command -v "$$name" >/dev/null && exit 0; done; \
+	{ test "$$(id -u)" = 0 && command -v apt-get >/dev/null && echo "installing chromium" && apt-get -qq update && \
+	DEBIAN_FRONTEND=noninteractive apt-get -qq install --no-install-recommends chromium fonts-liberation >/dev/null; } || \
+	echo "no Chromium was found, and none can be installed here: tests of pages are skipped"
+
 bench: $(VENV)/.dev  ## the kernel and the whole process against the same work in C
 	$(BIN)/python benchmarks/kernel.py
 	$(BIN)/python benchmarks/process.py
+	$(BIN)/python benchmarks/page.py
 
 docs: $(VENV)/.dev  ## run the README's code again; its output, picture and tables follow
 	$(BIN)/python docs/refresh.py

@@ -65,6 +65,8 @@ if TYPE_CHECKING:
     from gapless.scenarios import Outage, plan
     from gapless.simulate import simulate as simulate_drive
     from gapless.solution import Decision, Solution
+    from gapless.sweeps.conduct import sweep
+    from gapless.sweeps.store import read as read_sweep
     from gapless.systems.fuse import fuse
     from gapless.systems.recipe import System
     from gapless.systems.recipe import load as load_system
@@ -91,11 +93,13 @@ __all__ = [
     "load_system",
     "plan",
     "read",
+    "read_sweep",
     "recording_from_frames",
     "score",
     "simulate_drive",
     "smooth",
     "summarise",
+    "sweep",
     "to_pandas",
     "vehicle_attitude",
     "write",
@@ -112,13 +116,15 @@ _HOMES: Final = {
     "scenarios": ("Outage", "plan"),
     "simulate": ("simulate_drive",),
     "solution": ("Decision", "Solution"),
+    "sweeps.conduct": ("sweep",),
+    "sweeps.store": ("read_sweep",),
     "systems.fuse": ("fuse",),
     "systems.recipe": ("System", "load_system"),
     "systems.smooth": ("smooth",),
     "systems.vehicle": ("vehicle_attitude",),
 }
 """Public names by the module that they come from; loaded when first asked for."""
-_THERE: Final = {"simulate_drive": "simulate", "load_system": "load"}
+_THERE: Final = {"simulate_drive": "simulate", "load_system": "load", "read_sweep": "read"}
 """Names that read differently at home."""
 
 

@@ -23,6 +23,10 @@ class LaboratoryError(GaplessError):
     """A system cannot be scored: it reads the future."""
 
 
+class SweepError(GaplessError):
+    """The workers of a sweep cannot go on; what is stored stays, and the same sweep goes on from there."""
+
+
 class MissingExtraError(GaplessError):
     """An optional dependency is not installed.
 

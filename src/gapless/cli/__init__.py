@@ -13,7 +13,9 @@ from gapless.cli.bench import bench
 from gapless.cli.convert import convert
 from gapless.cli.fuse import fuse
 from gapless.cli.inspect import inspect
+from gapless.cli.report import report
 from gapless.cli.simulate import simulate
+from gapless.cli.sweep import sweep
 from gapless.errors import GaplessError
 
 REFUSED = 2
@@ -82,7 +84,7 @@ def gapless() -> None:
     """
 
 
-for _verb in (inspect, fuse, bench, simulate, convert):
+for _verb in (inspect, fuse, bench, report, simulate, convert, sweep):
     gapless.add_command(_verb)
 
 

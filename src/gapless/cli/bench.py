@@ -91,9 +91,9 @@ def bench(
 ) -> None:
     """Score systems on withheld stretches of GNSS, all on the same ones.
 
-    Each RECORDING is a folder as for `gapless fuse`. DIR receives the tables
-    (text, Markdown, LaTeX, JSON) and every outage, error and run as Parquet;
-    files of these names are replaced, once all the new ones are complete.
+    Each RECORDING is a folder as for `gapless fuse`. DIR receives report.html,
+    the tables (text, Markdown, LaTeX, JSON) and every outage, error and run as
+    Parquet; files of these names are replaced, once the new ones are complete.
     """
     from gapless.cli.output import check_folder, write_together
 
@@ -109,6 +109,7 @@ def bench(
     from gapless.laboratory.bench import plan_jobs
     from gapless.laboratory.folder import writers
     from gapless.laboratory.tables import as_text, tables
+    from gapless.reports.bench import write_bench_report
     from gapless.reports.summary import summarise
 
     count = len(plan_jobs(sources, methods, scenarios, protocols, summarise, seed))
@@ -118,9 +119,10 @@ def bench(
         )
     files = writers(results, {name: _told(value) for name, value in arguments.items()})
     write_together(out, files)
+    page = write_bench_report(out)
     click.echo(as_text(tables(results)))
     click.echo(f"{len(results.outages)} outages scored in {results.seconds:.0f} s")
-    click.echo("\n".join(f"wrote {out / name}" for name in files))
+    click.echo("\n".join(f"wrote {path}" for path in (*(out / name for name in files), page)))
 
 
 def _told(value: Any) -> Any:

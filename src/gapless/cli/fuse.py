@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from gapless.cli.options import Job
     from gapless.evaluation import Scores
     from gapless.recording import Recording
+    from gapless.reports.background import Feature
     from gapless.solution import Solution
 
 FORMATS = {
@@ -25,6 +26,8 @@ FORMATS = {
     "gpx": "the track",
 }
 """What is written besides Parquet where it is asked for."""
+OWN = (*(f"solution.{name}" for name in ("parquet", *FORMATS)), "summary.json", "report.html")
+"""Names that are this verb's: a file of an earlier run under one of them would pass for this run's."""
 
 
 def _formats(command: Callable[..., Any]) -> Callable[..., Any]:
@@ -52,17 +55,33 @@ def _formats(command: Callable[..., Any]) -> Callable[..., Any]:
 @click.option("--vehicle", is_flag=True, help="Write the attitude of the car instead of the box's.")
 @_formats
 @click.option("--no-report", is_flag=True, help="Do not write report.html.")
-def fuse(out: Path, rate: float, smooth: bool, vehicle: bool, no_report: bool, **rest: Any) -> None:
+@click.option(
+    "--background",
+    type=click.Path(path_type=Path),
+    metavar="FILE",
+    help="GeoJSON of lines and polygons, drawn faintly beneath the track of report.html.",
+)
+def fuse(
+    out: Path,
+    rate: float,
+    smooth: bool,
+    vehicle: bool,
+    no_report: bool,
+    background: Path | None,
+    **rest: Any,
+) -> None:
     """Fuse a RECORDING into a trajectory with honest uncertainties.
 
     RECORDING is a folder with imu and gnss logs, or the two text files of a
     KF-GINS log. DIR receives solution.parquet, summary.json and report.html;
-    files of these names are replaced, once all the new ones are complete.
+    files of these names are replaced, once all the new ones are complete, and
+    those of an earlier run that this one does not write are removed.
     """
     from gapless.cli.output import check_folder, write_together
 
     chosen = [name for name in FORMATS if rest.pop(name)]
     check_folder(out)
+    ground = _background(background, no_report)
     work = job(**rest)
     solution, scores = _navigate(work, rate, smooth)
     if vehicle:
@@ -76,9 +95,25 @@ def fuse(out: Path, rate: float, smooth: bool, vehicle: bool, no_report: bool, *
     summary = summarise(solution, scores)
     files = _solution_files(solution, chosen) | {"summary.json": partial(_write_json, summary)}
     if not no_report:
-        files["report.html"] = partial(_write_report, solution, work.recording, scores)
-    write_together(out, files)
-    click.echo("\n".join([*summary_lines(summary), "", *(f"wrote {out / name}" for name in files)]))
+        files["report.html"] = partial(_write_report, solution, work.recording, scores, ground)
+    stale = write_together(out, files, OWN)
+    told = [
+        *(f"wrote {out / name}" for name in files),
+        *(f"removed {out / name}, of an earlier run" for name in stale),
+    ]
+    click.echo("\n".join([*summary_lines(summary), "", *told]))
+
+
+def _background(path: Path | None, no_report: bool) -> list[Feature]:
+    from gapless.errors import ConfigError
+
+    if path is None:
+        return []
+    if no_report:
+        raise ConfigError("--background is for report.html; leave out --no-report")
+    from gapless.reports.background import read_background
+
+    return read_background(path)
 
 
 def _navigate(work: Job, rate: float, smooth: bool) -> tuple[Solution, Scores | None]:
@@ -116,7 +151,9 @@ def _write_json(summary: dict[str, Any], path: Path) -> None:
     path.write_text(json.dumps(summary, indent=1, ensure_ascii=False, allow_nan=False) + "\n", "utf-8")
 
 
-def _write_report(solution: Solution, recording: Recording, scores: Scores | None, path: Path) -> None:
+def _write_report(
+    solution: Solution, recording: Recording, scores: Scores | None, ground: list[Feature], path: Path
+) -> None:
     from gapless.reports.report import write_report
 
-    write_report(solution, recording, scores, path)
+    write_report(solution, recording, scores, path, ground)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from contextlib import ExitStack, suppress
 from pathlib import Path
 
@@ -28,7 +28,9 @@ def check_folder(folder: Path) -> None:
             return
 
 
-def write_together(folder: Path, files: Mapping[str, Callable[[Path], object]]) -> None:
+def write_together(
+    folder: Path, files: Mapping[str, Callable[[Path], object]], own: Iterable[str] = ()
+) -> list[str]:
     """Write files under temporary names, then rename them all.
 
     Parameters
@@ -37,6 +39,13 @@ def write_together(folder: Path, files: Mapping[str, Callable[[Path], object]]) 
         Made if it is not there, and removed again if nothing comes of it.
     files : mapping of str to callable
         By name: writes the file at a path that it is given.
+    own : iterable of str
+        Names of which those that are not written now are removed at the end: they belong to other results.
+
+    Returns
+    -------
+    list of str
+        What was removed.
     """
     from gapless.io.writers.atomic import atomic
 
@@ -50,3 +59,7 @@ def write_together(folder: Path, files: Mapping[str, Callable[[Path], object]]) 
             with suppress(OSError):  # somebody else's file is in it by now
                 folder.rmdir()
         raise
+    stale = [name for name in own if name not in files and (folder / name).is_file()]
+    for name in stale:
+        (folder / name).unlink()
+    return stale

@@ -63,7 +63,7 @@ def tables(results: Results) -> list[Table]:
         if apart:
             found.append(_apart(protocol, apart, marks))
         found += _by_recording(protocol, [row for row in board if row["recording"] != POOLED], marks)
-    return [*found, _checks(results)]
+    return [*found, _checks(results, marks)]
 
 
 def _board(title: str, rows: Sequence[Row], marks: dict[str, str], note: str = "") -> Table:
@@ -150,9 +150,9 @@ def _by_recording(protocol: str, rows: Sequence[Row], marks: dict[str, str]) -> 
     ]
 
 
-def _checks(results: Results) -> Table:
+def _checks(results: Results, marks: dict[str, str]) -> Table:
     cells = tuple(
-        (system, said, ", ".join(sorted(name for name, what in found.items() if what == said)))
+        (marks[system], said, ", ".join(sorted(name for name, what in found.items() if what == said)))
         for system, found in results.checks.items()
         for said in dict.fromkeys(found.values())
     )

@@ -9,14 +9,15 @@ import numpy as np
 
 from gapless.evaluation import Scores
 from gapless.recording import Array
-from gapless.reports.decimate import envelope, scatter
+from gapless.reports.decimate import POINTS, Stretch, envelope, scatter
+from gapless.reports.pack import packed, packed_times
 from gapless.reports.quantities import Quantity, channel, state
 from gapless.solution import Innovations, Solution
 from gapless.units import DEG
 
 Range = tuple[float, float]
-_DIGITS = 4
-"""Significant digits kept of what a chart shows."""
+_AROUND = 0.25
+"""How much before and after an outage is shown in its detail, in its lengths."""
 
 
 def charts(solution: Solution, scores: Scores | None) -> list[dict[str, Any]]:
@@ -31,7 +32,8 @@ def charts(solution: Solution, scores: Scores | None) -> list[dict[str, Any]]:
     -------
     list of dict
         JSON-able: `group`, `title`, `unit`, `range`, `log`, `dots`, `gap` (longest step that a line
-        may cross, s), `t`, and `series`, each with `name`, `y` and, if it has one, half a `band`.
+        may cross, s), packed `t`, and `series`, each with `name`, packed `y` and, if it has one, half
+        a `band`.
     """
     found: list[dict[str, Any]] = []
     if scores is not None and np.isfinite(scores.errors.horizontal).any():
@@ -43,7 +45,8 @@ def charts(solution: Solution, scores: Scores | None) -> list[dict[str, Any]]:
     for name, one in solution.innovations.items():
         if len(one):
             found += _innovation_charts(name, one, solution.start)
-    return found
+    focus = [(a - _AROUND * (b - a), b + _AROUND * (b - a)) for a, b in solution.outages]
+    return [_decimated(one, focus) for one in found]
 
 
 def _chart(
@@ -56,56 +59,39 @@ def _chart(
     **more: Any,
 ) -> dict[str, Any]:
     """One chart; `bands` are half widths, shape (n, len(series))."""
-    columns = np.column_stack([y for _, y in series])
-    table = columns if bands is None else np.column_stack([columns, bands])
-    if more.get("dots"):
-        rows = scatter(np.abs(columns).max(axis=1))
-        t, table = time[rows], table[rows]
-    else:
-        t, table = envelope(time, table)
-    k = len(series)
-    drawn: list[dict[str, Any]] = [
-        {"name": name, "y": significant(table[:, i])} for i, (name, _) in enumerate(series)
-    ]
-    if bands is not None:
-        for i, one in enumerate(drawn):
-            one["band"] = significant(table[:, k + i])
-    step = float(np.median(np.diff(time))) if len(time) > 1 else 1.0
-    bucket = step * max(1.0, len(time) / len(t)) if len(t) else step
     return {
         "group": group,
         "title": title,
         "unit": unit,
-        "range": list(more.pop("range", None) or extent(columns, bands)),
+        "range": list(more.pop("range", None) or extent(np.column_stack([y for _, y in series]), bands)),
         "log": False,
         "dots": False,
-        "gap": round(max(2.0, 4.0 * bucket), 2),
-        "t": np.round(t, 2).tolist(),
-        "series": drawn,
+        "t": time,
+        "series": series,
+        "bands": bands,
         **more,
     }
 
 
-def significant(values: Array) -> list[float | None]:
-    """Values with four significant digits, none of them finer than the chart can show.
-
-    Parameters
-    ----------
-    values : ndarray, shape (n,)
-
-    Returns
-    -------
-    list
-        None where a value is not finite.
-    """
-    known = np.isfinite(values)
-    size = np.abs(values[known])
-    top = float(np.percentile(size, 99)) if len(size) else 0.0
-    decimals = _DIGITS - 1 - int(np.floor(np.log10(top))) if top > 0.0 else 0
-    decimals = min(max(decimals, 0), 9)
-    short = np.round(np.where(known, values, 0.0), decimals).tolist()
-    whole = decimals == 0
-    return [(int(v) if whole else v) if ok else None for v, ok in zip(short, known.tolist(), strict=True)]
+def _decimated(chart: dict[str, Any], focus: Sequence[Stretch]) -> dict[str, Any]:
+    """A chart with as many rows as are embedded, packed."""
+    time, series, bands = chart["t"], chart["series"], chart.pop("bands")
+    columns = np.column_stack([y for _, y in series])
+    table = columns if bands is None else np.column_stack([columns, bands])
+    if chart["dots"]:
+        rows = scatter(np.abs(columns).max(axis=1))
+        t, table = time[rows], table[rows]
+    else:
+        t, table = envelope(time, table, POINTS, focus)
+    drawn: list[dict[str, Any]] = [
+        {"name": name, "y": packed(table[:, i])} for i, (name, _) in enumerate(series)
+    ]
+    if bands is not None:
+        for i, one in enumerate(drawn):
+            one["band"] = packed(table[:, len(series) + i])
+    step = float(np.median(np.diff(time))) if len(time) > 1 else 1.0
+    widest = step * max(1.0, 2.0 * len(time) / max(len(t), 1))
+    return chart | {"t": packed_times(t), "series": drawn, "gap": round(max(2.0, 4.0 * widest), 2)}
 
 
 def extent(columns: Array, bands: Array | None = None) -> Range:

@@ -3,14 +3,23 @@
 from __future__ import annotations
 
 import heapq
+from collections.abc import Sequence
+from itertools import pairwise
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from gapless.recording import Array
 
+Stretch = tuple[float, float]
+POINTS: Final = 8000
+"""Rows of a chart over time: some per pixel of the widest screen, for a look closer."""
 
-def envelope(time: Array, columns: Array, points: int = 3000) -> tuple[Array, Array]:
+
+def envelope(
+    time: Array, columns: Array, points: int = POINTS, focus: Sequence[Stretch] = ()
+) -> tuple[Array, Array]:
     """Smallest and largest value per bucket of rows, in the order in which they occur.
 
     Parameters
@@ -19,7 +28,9 @@ def envelope(time: Array, columns: Array, points: int = 3000) -> tuple[Array, Ar
     columns : ndarray, shape (n, k)
         NaN where unknown.
     points : int
-        Most rows to return.
+        Most rows to return, about.
+    focus : sequence of (float, float)
+        Stretches of time that share half of the points among them: their buckets are finer.
 
     Returns
     -------
@@ -31,18 +42,39 @@ def envelope(time: Array, columns: Array, points: int = 3000) -> tuple[Array, Ar
     n = len(time)
     if n <= points:
         return time, columns
-    buckets = points // 2
-    edges = np.linspace(0, n, buckets + 1).astype(int)
-    width = int(np.diff(edges).max())
-    rows = np.minimum(edges[:-1, None] + np.arange(width), edges[1:, None] - 1)
-    block = columns[rows]
+    edges = _edges(time, points // 2, focus)
+    width = np.diff(edges)
+    rows = np.minimum(edges[:-1, None] + np.arange(int(width.max())), edges[1:, None] - 1)
+    found = np.column_stack([_extremes(column[rows]) for column in columns.T])
+    middle = (edges[:-1] + edges[1:]) // 2
+    twice = np.column_stack([np.full(len(width), True), width > 1]).ravel()
+    return time[np.column_stack([edges[:-1], middle]).ravel()[twice]], found[twice]
+
+
+def _extremes(block: Array) -> Array:
+    """Smallest and largest of each row of a block, one after the other as they occur in it."""
     unknown = np.isnan(block)
     low = np.where(unknown, np.inf, block).argmin(axis=1)
     high = np.where(unknown, -np.inf, block).argmax(axis=1)
     pair = np.stack([np.minimum(low, high), np.maximum(low, high)], axis=1)
-    found = np.take_along_axis(block, pair, axis=1).reshape(2 * buckets, -1)
-    middle = (edges[:-1] + edges[1:]) // 2
-    return time[np.column_stack([edges[:-1], middle]).ravel()], found
+    return np.take_along_axis(block, pair, axis=1).ravel()
+
+
+def _edges(time: Array, buckets: int, focus: Sequence[Stretch]) -> NDArray[np.int64]:
+    """First rows of buckets, and the end: none of one row where two fit, half of them in the focus."""
+    n = len(time)
+    inside = np.zeros(n, bool)
+    for a, b in focus:
+        inside[np.searchsorted(time, a) : np.searchsorted(time, b)] = True
+    fine = int(inside.sum())
+    share = min(buckets // 2, fine // 2)
+    rates = (min(buckets - share, n - fine) / max(n - fine, 1), share / max(fine, 1))
+    cuts = [0, *(np.flatnonzero(np.diff(inside)) + 1).tolist(), n]
+    pieces = []
+    for a, b in pairwise(cuts):
+        k = max(1, min((b - a) // 2, round((b - a) * rates[int(inside[a])])))
+        pieces.append(np.linspace(a, b, k + 1).astype(int)[:-1])
+    return np.concatenate([*pieces, [n]])
 
 
 def scatter(size: Array, points: int = 3000) -> NDArray[np.int64]:

@@ -40,6 +40,21 @@ def plain(value: Any) -> Any:
     return value
 
 
+def known(value: float | None) -> float:
+    """What JSON's null stands for.
+
+    Parameters
+    ----------
+    value : float, optional
+
+    Returns
+    -------
+    float
+        NaN for None.
+    """
+    return math.nan if value is None else value
+
+
 def number(value: float, unit: str = "", digits: int = 3) -> str:
     """A number to so many significant digits, whole ones kept, with its unit.
 

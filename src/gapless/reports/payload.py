@@ -5,16 +5,18 @@ Times are seconds after the first IMU sample, the track is in metres east and no
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
 from gapless.evaluation import Scores, chi_square_quantile
 from gapless.evaluation.errors import gnss_truth
-from gapless.motion import offset_ned
 from gapless.recording import Array, Recording, Trajectory
+from gapless.reports.background import Feature, east_north, placed
 from gapless.reports.charts import charts
-from gapless.reports.decimate import simplify
+from gapless.reports.decimate import POINTS, simplify
+from gapless.reports.pack import rounded
 from gapless.scenarios import Outage, withheld
 from gapless.solution import Solution
 
@@ -25,14 +27,22 @@ _COASTING = 3.0
 """Stretches without GNSS shorter than this [s] are the rhythm of the receiver, not an outage."""
 
 
-def payload(solution: Solution, recording: Recording, scores: Scores | None) -> dict[str, Any]:
+def payload(
+    solution: Solution,
+    recording: Recording | None,
+    scores: Scores | None,
+    background: Sequence[Feature] = (),
+) -> dict[str, Any]:
     """Data of the page's scripts.
 
     Parameters
     ----------
     solution : Solution
-    recording : Recording
+    recording : Recording, optional
+        Its fixes and its reference are drawn.
     scores : Scores, optional
+    background : sequence of Feature
+        Drawn beneath the track.
 
     Returns
     -------
@@ -44,15 +54,28 @@ def payload(solution: Solution, recording: Recording, scores: Scores | None) -> 
     return {
         "span": [rounded(solution.trajectory.time[:1] - solution.start, 2)[0], round(end, 2)],
         "outages": [[round(a, 3), round(b, 3)] for a, b in solution.outages],
-        "track": _track(solution, recording, scores),
+        "track": _track(solution, recording, scores, background),
         "times": _shared_times(drawn),
         "charts": drawn,
+        "embedded": _embedded(solution),
     }
 
 
-def _shared_times(drawn: list[dict[str, Any]]) -> list[list[float]]:
-    """Times of all charts, each list once; `t` of a chart becomes the index of its list."""
-    times: list[list[float]] = []
+def _embedded(solution: Solution) -> str:
+    """What of the solution's rows is on the page, for its reader."""
+    n = len(solution.trajectory)
+    if n <= POINTS:
+        return f"Charts show all {n} rows of the solution."
+    finer = ", half of them in and around the outages" if solution.outages else ""
+    return (
+        f"Charts hold the extremes of the solution's {n} rows in about {POINTS} points{finer}; "
+        "every row is in solution.parquet."
+    )
+
+
+def _shared_times(drawn: list[dict[str, Any]]) -> list[str]:
+    """Times of all charts, each once; `t` of a chart becomes the index of its own."""
+    times: list[str] = []
     for one in drawn:
         if one["t"] not in times:
             times.append(one["t"])
@@ -60,53 +83,57 @@ def _shared_times(drawn: list[dict[str, Any]]) -> list[list[float]]:
     return times
 
 
-def rounded(values: Array, decimals: int) -> list[float | None]:
-    """A list for JSON.
-
-    Parameters
-    ----------
-    values : ndarray, shape (n,)
-    decimals : int
-
-    Returns
-    -------
-    list
-        None where a value is not finite.
-    """
-    known = np.isfinite(values)
-    short = np.round(np.where(known, values, 0.0), decimals).tolist()
-    return [value if ok else None for value, ok in zip(short, known.tolist(), strict=True)]
-
-
-def _track(solution: Solution, recording: Recording, scores: Scores | None) -> dict[str, Any]:
+def _track(
+    solution: Solution, recording: Recording | None, scores: Scores | None, background: Sequence[Feature]
+) -> dict[str, Any]:
     t = solution.trajectory
     start = solution.start
     origin = t.lla[len(t) // 2]
-    track = _path(t, origin, start)
-    stretches = [(a - start, b - start) for a, b in coasting(solution)]
+    track = path(t, origin, start)
     offset = 0.0 if scores is None else scores.clock_offset
-    fixes = gnss_truth(recording.gnss)
+    reference = None if recording is None else recording.reference
+    return {
+        **track,
+        "coasting": [[round(a - start, 2), round(b - start, 2)] for a, b in coasting(solution)],
+        "fixes": _fixes(solution, recording, origin),
+        "reference": None if reference is None else path(reference, origin, start - offset),
+        "ellipses": _ellipses(solution, origin),
+        "background": placed(background, t.lla),
+    }
+
+
+def _fixes(solution: Solution, recording: Recording | None, origin: Array) -> list[dict[str, Any]]:
+    """Fixes that were used, and those that were withheld."""
+    if recording is None:
+        return [{"t": [], "x": [], "y": []}] * 2
+    fixes, start = gnss_truth(recording.gnss), solution.start
     chosen = fixes.take(
         np.unique(np.linspace(0, len(fixes) - 1, _FIXES).astype(int)) if len(fixes) else slice(0)
     )
     away = withheld(chosen.time, [Outage(a, b) for a, b in solution.outages], start)
-    reference = recording.reference
-    return {
-        **track,
-        "coasting": [[round(a, 2), round(b, 2)] for a, b in stretches],
-        "fixes": [_path(chosen.take(m), origin, start, whole=True) for m in (~away, away)],
-        "reference": None if reference is None else _path(reference, origin, start - offset),
-        "ellipses": _ellipses(solution, origin),
-    }
+    return [path(chosen.take(m), origin, start, whole=True) for m in (~away, away)]
 
 
-def _xy(lla: Array, origin: Array) -> Array:
-    return offset_ned(lla, np.broadcast_to(origin, lla.shape))[:, 1::-1]
+def path(t: Trajectory, origin: Array, start: float, whole: bool = False) -> dict[str, Any]:
+    """A path as a map draws it.
 
+    Parameters
+    ----------
+    t : Trajectory
+    origin : ndarray, shape (3,)
+        Latitude, longitude [rad], height [m] of x = y = 0.
+    start : float
+        Its time zero [s].
+    whole : bool
+        Keep every row, not only those that shape it.
 
-def _path(t: Trajectory, origin: Array, start: float, whole: bool = False) -> dict[str, Any]:
+    Returns
+    -------
+    dict
+        `t` [s], `x` east, `y` north [m].
+    """
     t = t.take(np.isfinite(t.lla[:, :2]).all(axis=1))
-    xy = _xy(t.lla, origin)
+    xy = east_north(t.lla, origin)
     if not whole:
         rows = simplify(t.time, xy)
         t, xy = t.take(rows), xy[rows]
@@ -154,6 +181,6 @@ def _ellipses(solution: Solution, origin: Array) -> list[list[float | None]]:
     size, direction = np.linalg.eigh(covariance)
     axes = np.sqrt(chi_square_quantile(0.95, 2) * np.maximum(size[:, ::-1], 0.0))
     angle = np.arctan2(direction[:, 1, 1], direction[:, 0, 1])
-    xy = _xy(chosen.lla, origin)
+    xy = east_north(chosen.lla, origin)
     table = np.column_stack([chosen.time - solution.start, xy, axes, angle])
     return [rounded(row, 3) for row in table]

@@ -1,27 +1,37 @@
-"""One self-contained page: tables as HTML, track and charts drawn by a script from embedded data."""
+"""The page of one run: its tables from the summary, its track and charts from the solution."""
 
 from __future__ import annotations
 
-import json
-from html import escape
-from importlib.resources import files
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from string import Template
 from typing import Any
 
-from gapless import __version__
 from gapless.evaluation import Scores
 from gapless.recording import Recording
 from gapless.reports import tables
-from gapless.reports.numbers import distance, duration
+from gapless.reports.background import Feature
+from gapless.reports.numbers import distance, duration, known
+from gapless.reports.page import Content, fill, render, section
 from gapless.reports.payload import payload
-from gapless.reports.summary import span, travelled
+from gapless.reports.summary import summarise
 from gapless.solution import Solution
 
-_SCRIPTS = ("view.js", "chart.js", "track.js", "main.js")
+_SECTIONS = (
+    ("outages", "Outages", tables.outages),
+    ("decisions", "Decisions", tables.decisions),
+    ("innovations", "Innovations", tables.innovations),
+    ("states", "States at the end", tables.states),
+    ("notes", "Noticed in the recording", tables.notes),
+)
 
 
-def write_report(solution: Solution, recording: Recording, scores: Scores | None, path: str | Path) -> None:
+def write_report(
+    solution: Solution,
+    recording: Recording,
+    scores: Scores | None,
+    path: str | Path,
+    background: Sequence[Feature] = (),
+) -> None:
     """Write the report of a run as one HTML file that needs no network.
 
     Parameters
@@ -34,83 +44,53 @@ def write_report(solution: Solution, recording: Recording, scores: Scores | None
         From `gapless.evaluation.score`.
     path : str or Path
         Where to; written in one go.
+    background : sequence of Feature
+        From `gapless.reports.background.read_background`, drawn beneath the track.
     """
-    Path(path).write_text(page(solution, recording, scores), encoding="utf-8")
+    Path(path).write_text(page(solution, recording, scores, background=background), encoding="utf-8")
 
 
-def page(solution: Solution, recording: Recording, scores: Scores | None) -> str:
+def page(
+    solution: Solution,
+    recording: Recording | None,
+    scores: Scores | None,
+    summary: Mapping[str, Any] | None = None,
+    background: Sequence[Feature] = (),
+) -> str:
     """The report as text.
 
     Parameters
     ----------
     solution : Solution
-    recording : Recording
+    recording : Recording, optional
+        Without it, neither fixes nor a reference are drawn.
     scores : Scores, optional
+    summary : mapping, optional
+        From `summarise`, if it is there already.
+    background : sequence of Feature
 
     Returns
     -------
     str
         HTML.
     """
-    sections = {
-        "outages": tables.outages(scores),
-        "decisions": tables.decisions(solution),
-        "innovations": tables.innovations(solution),
-        "states": tables.states(solution),
-        "notes": tables.notes(solution, recording),
-    }
-    return Template(_asset("page.html")).substitute(
-        name=escape(solution.name),
-        system=escape(solution.system),
-        lead=_lead(solution, scores),
-        tiles=tables.tiles(solution, scores),
-        style=_asset("style.css"),
-        script="\n".join(_asset(name) for name in _SCRIPTS),
-        data=embedded(payload(solution, recording, scores)),
-        version=escape(__version__),
-        **{key: _section(key, body) for key, body in sections.items()},
+    told = summarise(solution, scores) if summary is None else summary
+    content = Content(
+        name=solution.name,
+        kind=solution.system,
+        lead=_lead(told),
+        tiles=tables.tiles(told),
+        body=fill("fuse/body.html", {key: section(key, title, make(told)) for key, title, make in _SECTIONS}),
+        data=payload(solution, recording, scores, background),
+        scripts=("fuse/track.js", "fuse/main.js"),
     )
+    return render(content)
 
 
-def embedded(data: Any) -> str:
-    """JSON that can stand inside a script element.
-
-    Parameters
-    ----------
-    data : object
-        JSON-able.
-
-    Returns
-    -------
-    str
-        Nothing in it can end the element or start a comment.
-    """
-    text = json.dumps(data, separators=(",", ":"), allow_nan=False)
-    return text.replace("&", "\\u0026").replace("<", "\\u003c").replace(">", "\\u003e")
-
-
-_TITLES = {
-    "outages": "Outages",
-    "decisions": "Decisions",
-    "innovations": "Innovations",
-    "states": "States at the end",
-    "notes": "Noticed in the recording",
-}
-
-
-def _section(key: str, body: str) -> str:
-    return f'<section id="{key}"><h2>{_TITLES[key]}</h2>{body}</section>' if body else ""
-
-
-def _lead(solution: Solution, scores: Scores | None) -> str:
-    moved = distance(travelled(solution.trajectory))
-    lasting = duration(span(solution.trajectory))
-    text = f"{lasting} and {moved}, fused by the system \u201c{solution.system}\u201d"
-    count = len(solution.outages)
+def _lead(summary: Mapping[str, Any]) -> str:
+    lasting, moved = duration(known(summary["duration"])), distance(known(summary["distance"]))
+    text = f"{lasting} and {moved}, fused by the system \u201c{summary['system']}\u201d"
+    count, scores = len(summary["outages"]), summary["scores"]
     if count:
         text += f" through {count} GNSS outage{'s' * (count > 1)}"
-    return escape(text + ("." if scores is None else f". Truth: {scores.statement}."))
-
-
-def _asset(name: str) -> str:
-    return (files("gapless.reports") / "assets" / name).read_text(encoding="utf-8")
+    return text + ("." if scores is None else f". Truth: {scores['statement']}.")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import fields
 from typing import Any
 
@@ -12,7 +13,7 @@ from gapless import __version__
 from gapless.evaluation import Scores, consistency
 from gapless.motion import horizontal_velocity, motion
 from gapless.recording import Trajectory
-from gapless.reports.numbers import measured, plain
+from gapless.reports.numbers import known, measured, plain
 from gapless.reports.quantities import state
 from gapless.solution import Decision, Innovations, Solution
 from gapless.units import DEG
@@ -179,6 +180,23 @@ def _outages(solution: Solution, scores: Scores | None) -> list[dict[str, Any]]:
     if scores is None:
         return [{"start": plain(a), "end": plain(b)} for a, b in solution.outages]
     return [_degrees(one) for one in scores.outages]
+
+
+def decision_of(entry: Mapping[str, Any]) -> Decision:
+    """A decision as it stands in a summary.
+
+    Parameters
+    ----------
+    entry : mapping
+
+    Returns
+    -------
+    Decision
+    """
+    value = entry["value"]
+    if not isinstance(value, str):
+        value = tuple(map(known, value)) if isinstance(value, (list, tuple)) else known(value)
+    return Decision(**{**entry, "value": value})
 
 
 def decision_value(decision: Decision) -> str:

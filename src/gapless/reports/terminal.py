@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-import math
 import textwrap
 from collections.abc import Iterator, Mapping
 from typing import Any
 
 import numpy as np
 
-from gapless.reports.numbers import distance, duration, measured, number, percent
-from gapless.reports.summary import decision_value
-from gapless.solution import Decision
+from gapless.reports.numbers import distance, duration, known, measured, number, percent
+from gapless.reports.summary import decision_of, decision_value
 
 _WIDTH = 80
 
@@ -46,20 +44,15 @@ def summary_lines(summary: Mapping[str, Any]) -> list[str]:
     return [line.replace("\u00a0", " ") for part in wrapped for line in part]
 
 
-def _known(value: float | None) -> float:
-    return math.nan if value is None else value
-
-
 def _decision_lines(summary: Mapping[str, Any]) -> Iterator[str]:
     for one in summary["decisions"]:
-        value = tuple(map(_known, one["value"])) if isinstance(one["value"], list) else one["value"]
-        decision = Decision(**{**one, "value": math.nan if value is None else value})
-        yield f"  {one['name']}: {decision_value(decision)} ({one['source']}: {one['evidence']})"
+        value = decision_value(decision_of(one))
+        yield f"  {one['name']}: {value} ({one['source']}: {one['evidence']})"
 
 
 def _state_lines(summary: Mapping[str, Any]) -> Iterator[str]:
     for name, one in summary["states"].items():
-        parts = (measured(_known(v), _known(sd)) for v, sd in zip(one["value"], one["sd"], strict=True))
+        parts = (measured(known(v), known(sd)) for v, sd in zip(one["value"], one["sd"], strict=True))
         yield f"  {name.replace('_', ' ')}: {', '.join(parts)} {one['unit']}".rstrip()
 
 
@@ -67,7 +60,7 @@ def _innovation_lines(summary: Mapping[str, Any]) -> Iterator[str]:
     if summary["innovations"]:
         yield f"  {'channel':<16}{'count':>8}{'NIS/dof':>9}{'in 95 %':>9}{'inflated':>10}{'rejected':>10}"
     for name, c in summary["innovations"].items():
-        nis, share = number(_known(c["mean_nis"])), percent(_known(c["within_95"]))
+        nis, share = number(known(c["mean_nis"])), percent(known(c["within_95"]))
         yield f"  {name:<16}{c['count']:>8}{nis:>9}{share:>9}{c['inflated']:>10}{c['rejected']:>10}"
 
 
@@ -78,9 +71,9 @@ def _score_lines(summary: Mapping[str, Any]) -> Iterator[str]:
     aided = scores["aided"]
     yield f"  truth: {scores['statement']}"
     if scores["truth"] == "reference":
-        line = f"  horizontal {number(_known(aided['horizontal_rmse']), 'm')} RMS outside outages"
-        yield line + f" (raw fixes {number(_known(scores['fixes_horizontal_rmse']), 'm')})"
-        angles = [_known(aided[f"{a}_rmse_deg"]) for a in ("roll", "pitch", "heading")]
+        line = f"  horizontal {number(known(aided['horizontal_rmse']), 'm')} RMS outside outages"
+        yield line + f" (raw fixes {number(known(scores['fixes_horizontal_rmse']), 'm')})"
+        angles = [known(aided[f"{a}_rmse_deg"]) for a in ("roll", "pitch", "heading")]
         if np.isfinite(angles).any():
             yield f"  roll, pitch, heading {', '.join(map(number, angles))} deg RMS"
     if scores["height_offset"] is not None:
@@ -94,8 +87,8 @@ def _outage_lines(summary: Mapping[str, Any]) -> Iterator[str]:
         return
     yield f"  {'start:end s':<14}{'largest':>9}{'at end':>9}{'travelled':>11}{'heading':>9}  "
     for o in summary["outages"]:
-        cells = [number(_known(o[key]), "m") for key in ("horizontal_max", "horizontal_end")]
-        heading = number(_known(o["heading_max_deg"]), "deg", 2)
+        cells = [number(known(o[key]), "m") for key in ("horizontal_max", "horizontal_end")]
+        heading = number(known(o["heading_max_deg"]), "deg", 2)
         line = f"  {o['start']:g}:{o['end']:g}".ljust(16) + f"{cells[0]:>9}{cells[1]:>9}"
         yield (line + f"{distance(o['distance']):>11}{heading:>9}  {', '.join(o['labels'])}").rstrip()
     s = scores["horizontal_max"]

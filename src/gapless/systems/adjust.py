@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import get_args
+from collections.abc import Mapping
+from typing import Any, get_args
 
 import msgspec
 from msgspec.structs import replace
@@ -10,7 +11,7 @@ from msgspec.structs import replace
 from gapless.errors import ConfigError
 from gapless.recording import Recording
 from gapless.sensors import grade_names
-from gapless.systems.recipe import Clock, Offset, System
+from gapless.systems.recipe import Clock, Offset, System, checked
 
 
 def without(system: System, *names: str) -> System:
@@ -46,6 +47,39 @@ def without(system: System, *names: str) -> System:
         constraints=tuple(name for name in system.constraints if name not in out),
         sensors=tuple(name for name in system.sensors if name not in out),
     )
+
+
+def changed(system: System, keys: Mapping[str, Any], where: str) -> System:
+    """A system with other values for some keys of its recipe.
+
+    Parameters
+    ----------
+    system : System
+    keys : mapping of str to object
+        New values by dotted key, such as "nonholonomic.lateral".
+    where : str
+        What to call the place that names them in an error.
+
+    Returns
+    -------
+    System
+
+    Raises
+    ------
+    ConfigError
+        If there is no such key or the recipe could not have that value.
+    """
+    tables = msgspec.to_builtins(system)
+    for key, value in keys.items():
+        *path, last = key.split(".")
+        table: Any = tables
+        for part in path:
+            table = table.get(part) if isinstance(table, dict) else None
+        if not isinstance(table, dict):
+            named = ", ".join(name for name, value in tables.items() if isinstance(value, dict))
+            raise ConfigError(f"{where}: a recipe has no {key!r}; its tables are {named}")
+        table[last] = value
+    return checked(tables, where)
 
 
 def with_clock(system: System, channel: str, offset: float) -> System:

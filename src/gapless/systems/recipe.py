@@ -5,17 +5,21 @@ Angles are in degrees and everything else in SI units, as a user writes them.
 
 from __future__ import annotations
 
+import re
 import tomllib
+from collections.abc import Mapping
 from importlib.resources import files
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal, TypeVar, get_args
 
 import msgspec
 from msgspec import Meta, Struct
+from msgspec.structs import fields
 
 from gapless.errors import ConfigError
 from gapless.inertial.layout import EXTRAS
 
+T = TypeVar("T", bound=Struct)
 Positive = Annotated[float, Meta(gt=0.0)]
 NonNegative = Annotated[float, Meta(ge=0.0)]
 Angle = Annotated[float, Meta(ge=-180.0, le=360.0)]
@@ -167,12 +171,52 @@ def parse(text: str, where: str) -> System:
     ConfigError
         With the path of the key and the valid choices.
     """
+    return checked(loads(text, where), where)
+
+
+def loads(text: str, where: str) -> dict[str, Any]:
+    """Tables of a TOML text.
+
+    Parameters
+    ----------
+    text : str
+    where : str
+        What to call it in an error.
+
+    Returns
+    -------
+    dict
+
+    Raises
+    ------
+    ConfigError
+        If it is not TOML.
+    """
     try:
-        system = msgspec.convert(tomllib.loads(text), System)
+        return tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
         raise ConfigError(f"{where}: not valid TOML: {error}") from None
-    except msgspec.ValidationError as error:
-        raise ConfigError(f"{where}: {_explain(str(error))}") from None
+
+
+def checked(tables: Mapping[str, Any], where: str) -> System:
+    """A system from the tables of its TOML.
+
+    Parameters
+    ----------
+    tables : mapping
+    where : str
+        What to call it in an error.
+
+    Returns
+    -------
+    System
+
+    Raises
+    ------
+    ConfigError
+        With the path of the key and the valid choices.
+    """
+    system = typed(tables, System, where)
     unknown = [name for name in system.filter.states if name not in EXTRAS]
     if len(set(system.filter.states)) < len(system.filter.states):
         raise ConfigError(f"{where}: filter.states names a block twice; name each once")
@@ -181,16 +225,48 @@ def parse(text: str, where: str) -> System:
     return system
 
 
-def _explain(message: str) -> str:
+def typed(tables: Mapping[str, Any], kind: type[T], where: str) -> T:
+    """Tables of a TOML file as the struct that they should be.
+
+    Parameters
+    ----------
+    tables : mapping
+    kind : type of msgspec.Struct
+    where : str
+        What to call the file in an error.
+
+    Returns
+    -------
+    msgspec.Struct
+        Of that kind.
+
+    Raises
+    ------
+    ConfigError
+        With the path of the key and the valid choices.
+    """
+    try:
+        return msgspec.convert(tables, kind)
+    except msgspec.ValidationError as error:
+        raise ConfigError(f"{where}: {_explain(str(error), kind)}") from None
+
+
+def _explain(message: str, kind: type[Struct]) -> str:
     """Msgspec's message with a dotted path, and the keys that there are where one is unknown."""
     text, _, place = message.partition(" - at `")
     path = place.rstrip("`").removeprefix("$").lstrip(".")
     if "unknown field" in text:
-        table: type[Struct] = System
-        for part in path.split("."):
-            table = next((f.type for f in msgspec.structs.fields(table) if f.name == part), table)
-        return f"{text} in {path or 'the top table'}; it may hold: {', '.join(table.__struct_fields__)}"
+        for part in re.findall(r"\w+", re.sub(r"\[.*?\]", "", path)):
+            kind = next((_struct(f.type) or kind for f in fields(kind) if f.encode_name == part), kind)
+        return f"{text} in {path or 'the top table'}; it may hold: {', '.join(kind.__struct_fields__)}"
     return f"{path}: {text}" if path else text
+
+
+def _struct(kind: Any) -> type[Struct] | None:
+    """The struct in a type such as `Struct | tuple[Struct, ...] | None`."""
+    if isinstance(kind, type) and issubclass(kind, Struct):
+        return kind
+    return next((found for part in get_args(kind) if (found := _struct(part))), None)
 
 
 def load(name: str | Path) -> System:

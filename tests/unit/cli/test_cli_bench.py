@@ -51,6 +51,7 @@ def test_the_folder_is_the_contract(bench):
     assert told["arguments"]["length"] == "10,15"
     assert (folder / "tables.txt").read_text().strip() in said
     assert not [p for p in folder.iterdir() if p.name.startswith(".")]
+    assert "<html" in (folder / "report.html").read_text("utf-8")
 
 
 def test_errors_by_age_are_those_of_the_scores(bench):

@@ -5,8 +5,8 @@ import sys
 
 import pytest
 
-VERBS = ("", "inspect", "fuse", "bench", "simulate", "convert")
-HEAVY = ("numpy", "numba", "pyarrow", "msgspec", "pandas", "scipy")
+VERBS = ("", "inspect", "fuse", "bench", "report", "simulate", "convert", "sweep")
+HEAVY = ("matplotlib", "numpy", "numba", "pyarrow", "msgspec", "pandas", "scipy", "fsspec", "distributed")
 
 
 @pytest.mark.parametrize("verb", VERBS)

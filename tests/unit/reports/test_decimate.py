@@ -17,7 +17,7 @@ def test_no_extreme_is_lost_and_times_stay_in_order(n):
     y = rng.standard_normal((n, 3))
     y[rng.integers(0, n, 5), 1] = [50.0, -60.0, 70.0, -80.0, 90.0]
     t = np.arange(n) * 0.1
-    found_t, found = envelope(t, y)
+    found_t, found = envelope(t, y, 3000)
     assert len(found_t) == len(found) <= 3000
     assert (np.diff(found_t) > 0).all()
     edges = np.linspace(0, n, 1501).astype(int)
@@ -75,3 +75,25 @@ def test_scattered_dots_keep_their_outliers_and_their_density():
     # that is the largest lifts it to the quantile 0.5 / 0.9 at most, 0.765.
     assert 0.62 < np.nanmedian(size[rows]) < 0.80
     assert scatter(size[:100]).tolist() == list(range(100))
+
+
+def test_a_focus_has_the_finer_buckets_and_no_extreme_is_lost():
+    rng = np.random.default_rng(3)
+    t = np.arange(100_000) * 0.01
+    y = rng.standard_normal((len(t), 2))
+    y[[12_345, 60_000], [0, 1]] = [80.0, -90.0]
+    focus = [(200.0, 230.0), (700.0, 720.0)]
+    found_t, found = envelope(t, y, 4000, focus)
+    inside = sum(int(((found_t >= a) & (found_t < b)).sum()) for a, b in focus)
+    assert inside == pytest.approx(2000, abs=10)  # half of the points, but for the rounding of buckets
+    assert len(found_t) == len(found) <= 4010
+    assert (np.diff(found_t) > 0).all()
+    np.testing.assert_array_equal([found.min(0), found.max(0)], [y.min(0), y.max(0)])
+
+
+def test_a_focus_that_fits_is_kept_row_by_row():
+    t = np.arange(10_000) * 0.1
+    y = np.random.default_rng(5).standard_normal((len(t), 1))
+    found_t, found = envelope(t, y, 2000, [(300.0, 350.0)])
+    kept = found[(found_t >= 300.0) & (found_t < 350.0)]
+    np.testing.assert_array_equal(kept, y[3000:3500])
