@@ -19,6 +19,10 @@ class AlignmentError(GaplessError):
     """The data never allowed an initial position, velocity or attitude."""
 
 
+class LaboratoryError(GaplessError):
+    """A system cannot be scored: it reads the future."""
+
+
 class SweepError(GaplessError):
     """The workers of a sweep cannot go on; what is stored stays, and the same sweep goes on from there."""
 

@@ -42,7 +42,7 @@ def events(
     ------
     Event
     """
-    yield from merged(recording.imu, _arrivals(recording, offsets, thin), start, end)
+    yield from merged(recording.imu, _arrivals(recording, offsets, thin, start, end), start, end)
 
 
 def in_order(recording: Recording, offsets: Mapping[str, float]) -> list[Arrival]:
@@ -59,7 +59,7 @@ def in_order(recording: Recording, offsets: Mapping[str, float]) -> list[Arrival
     list of (float, (Reading,))
         For `merged`. None comes after a sample that ends later than it holds, by a rounding error even.
     """
-    readings = [r for _, together in _arrivals(recording, offsets, 0.0) for r in together]
+    readings = [r for _, together in _arrivals(recording, offsets, 0.0, -np.inf, np.inf) for r in together]
     return [(r.time - 2.0 * EPS, (r,)) for r in sorted(readings, key=lambda r: r.time)]
 
 
@@ -93,20 +93,23 @@ def merged(
         yield ImuBlock.of(imu, first, last)
 
 
-def _arrivals(recording: Recording, offsets: Mapping[str, float], thin: float) -> list[Arrival]:
-    found = list(_fixes(recording.gnss, offsets, thin))
+def _arrivals(
+    recording: Recording, offsets: Mapping[str, float], thin: float, start: float, end: float
+) -> list[Arrival]:
+    found = list(_fixes(recording.gnss, offsets, thin, start, end))
     odometer = recording.odometer
     if odometer is not None:
         late, one = offsets.get("odometer", 0.0), np.ones(1)
-        gaps = _intervals(odometer.time)
-        for t, speed, gap in zip(odometer.time.tolist(), odometer.speed[:, None], gaps.tolist(), strict=True):
-            found.append((t, (Reading("odometer", t + late, speed, one, gap),)))
+        gaps = _intervals(odometer.time).tolist()
+        for i in _between(odometer.time, start, end):
+            t = float(odometer.time[i])
+            found.append((t, (Reading("odometer", t + late, odometer.speed[i : i + 1], one, gaps[i]),)))
         found.sort(key=lambda arrival: arrival[0])
     return found
 
 
 def _fixes(
-    gnss: Gnss, offsets: Mapping[str, float], thin: float
+    gnss: Gnss, offsets: Mapping[str, float], thin: float, start: float, end: float
 ) -> Iterator[tuple[float, tuple[Reading, ...]]]:
     if thin > 0.0:
         gnss = gnss.take(_thinned(gnss.time, thin))
@@ -114,7 +117,8 @@ def _fixes(
     has_position = np.asarray(np.isfinite(gnss.lla).all(axis=1))
     has_velocity = np.asarray(np.isfinite(gnss.v_n).all(axis=1))
     late = offsets.get("position", 0.0), offsets.get("velocity", 0.0)
-    for i, t in enumerate(gnss.time.tolist()):
+    for i in _between(gnss.time, start, end):
+        t = float(gnss.time[i])
         readings: tuple[Reading, ...] = ()
         if has_position[i]:
             readings += (Reading("position", t + late[0], gnss.lla[i], gnss.sd_position[i], gaps[i]),)
@@ -122,6 +126,11 @@ def _fixes(
             readings += (Reading("velocity", t + late[1], gnss.v_n[i], gnss.sd_velocity[i], gaps[i]),)
         if readings:
             yield t, readings
+
+
+def _between(time: Array, start: float, end: float) -> range:
+    """Rows with start <= time < end."""
+    return range(*np.searchsorted(time, [start, end]).tolist())
 
 
 def _thinned(time: Array, least: float) -> list[int]:

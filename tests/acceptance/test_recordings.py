@@ -16,10 +16,12 @@ from gapless import io
 from gapless.evaluation import score, solution_errors
 from gapless.evaluation.errors import gnss_truth
 from gapless.evaluation.statistics import rms
+from gapless.scenarios import plan
 from gapless.simulate import spikes
 from gapless.systems.decide import decide
-from gapless.systems.fuse import fuse
-from gapless.systems.recipe import System
+from gapless.systems.forks import piece, run_with_forks
+from gapless.systems.fuse import decide_before, fuse, withhold_from
+from gapless.systems.recipe import System, load
 from gapless.units import DEG
 
 DATA = Path(os.environ.get("GAPLESS_RECORDINGS", Path(__file__).parents[3] / "shared" / "data"))
@@ -167,3 +169,23 @@ def test_injected_spikes_do_no_harm(name):
     print(f"{name}: {count} spikes, {rms(apart):.2f} m RMS, {np.nanmax(apart):.2f} m at most")
     assert np.nanpercentile(apart, 95.0) < 3.0
     assert np.nanmax(apart) < 15.0
+
+
+def test_isolated_outages_on_kingston_are_whole_runs_with_that_outage_alone():
+    """Every seventh of thirty; `benchmarks/honesty.py --recording` has them all, and the time it takes."""
+    log, system = recording("kingston"), load("constraints")
+    texts = [f"every=180,length=60,first=240,shift={shift}" for shift in (0, 60, 120)]
+    outages = tuple(o for text in texts for o in plan([text], log))
+    decided = decide_before(withhold_from(log, outages), system, outages)
+    whole, forks = run_with_forks(log, system, (), outages, decided, 10.0)
+    compared = 0
+    for fork in forks[::7]:
+        part = piece(fork, log, whole, system, decided)
+        run = fuse(log, system, [fork.outage], decided=decided).trajectory
+        if len(part):
+            run = run.take((run.time >= part.time[0]) & (run.time <= part.time[-1]))
+            assert len(part) > 600
+            for name in ("time", "lla", "v_n", "euler", "sd", "horizontal", "source"):
+                assert np.array_equal(getattr(part, name), getattr(run, name)), (str(fork.outage), name)
+            compared += 1
+    assert compared >= 3

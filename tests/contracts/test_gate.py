@@ -10,9 +10,9 @@ from gapless import earth
 from gapless.events import ImuBlock
 from gapless.feed import events
 from gapless.filters.adaptation.gate import SOFT, Gate
+from gapless.motion import displace
 from gapless.navigator import Navigator
 from gapless.simulate import Receiver, simulate
-from gapless.simulate.receivers import displace
 
 START = 60.0
 """Driving, and well settled [s]."""

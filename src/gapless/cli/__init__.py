@@ -9,6 +9,7 @@ from typing import Any
 import click
 
 from gapless import __version__
+from gapless.cli.bench import bench
 from gapless.cli.convert import convert
 from gapless.cli.fuse import fuse
 from gapless.cli.inspect import inspect
@@ -83,7 +84,7 @@ def gapless() -> None:
     """
 
 
-for _verb in (inspect, fuse, report, simulate, convert, sweep):
+for _verb in (inspect, fuse, bench, report, simulate, convert, sweep):
     gapless.add_command(_verb)
 
 

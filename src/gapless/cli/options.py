@@ -25,7 +25,8 @@ _OUTAGE = (
     ),
     click.option(
         "--outages", multiple=True, metavar="PLAN",
-        help="Withhold GNSS at regular intervals: every=180,length=60,first=240 (seconds).",
+        help="Withhold GNSS at regular intervals: every=180,length=60,first=240 (seconds), or by another "
+        "plan: at random, in turns, degraded (docs/bench.md). Repeatable.",
     ),
 )  # fmt: skip
 _RECIPE = (
@@ -146,7 +147,7 @@ def job(
         import gapless.systems.fuse  # noqa: F401 - what navigates takes as long to load
 
         found = reading.result()
-    return Job(found, recipe, plan([*outage, *outages], found.duration), causal)
+    return Job(found, recipe, plan([*outage, *outages], found), causal)
 
 
 def _system(name: str | None, config: Path | None, without: Sequence[str], clock: Sequence[str]) -> System:

@@ -84,7 +84,7 @@ def simulate(
         receiver=Receiver(position_delay=late, velocity_delay=late),
         wheels=WheelSensor() if odometer else None,
     )
-    silent = plan([*outage, *outages], made.duration)
+    silent = plan([*outage, *outages], made)
     made = replace(made, gnss=withhold(made.gnss, silent, made.start))
     write_recording(made, out)
     click.echo("\n".join([*describe(made), "", f"wrote {out}"]))

@@ -1,26 +1,32 @@
 """Scoring a solution: errors against a truth, outages one by one, statistics over them."""
 
+from gapless.evaluation.ages import QUANTITIES, Ages, ages
 from gapless.evaluation.errors import Errors, solution_errors
-from gapless.evaluation.motion import first_motion
 from gapless.evaluation.outages import OutageScore, score_outage, score_outages
-from gapless.evaluation.scores import Accuracy, Scores, pool_spread, score
+from gapless.evaluation.scores import Accuracy, Scores, outage_ages, pool_spread, score, score_pieces
 from gapless.evaluation.statistics import Consistency, Spread, chi_square_quantile, consistency, nees, spread
+from gapless.motion import first_motion
 
 __all__ = [
+    "QUANTITIES",
     "Accuracy",
+    "Ages",
     "Consistency",
     "Errors",
     "OutageScore",
     "Scores",
     "Spread",
+    "ages",
     "chi_square_quantile",
     "consistency",
     "first_motion",
     "nees",
+    "outage_ages",
     "pool_spread",
     "score",
     "score_outage",
     "score_outages",
+    "score_pieces",
     "solution_errors",
     "spread",
 ]

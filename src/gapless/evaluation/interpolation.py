@@ -21,7 +21,7 @@ def interpolate(trajectory: Trajectory, time: Array, max_gap: float = MAX_GAP) -
     Parameters
     ----------
     trajectory : Trajectory
-        At least one row.
+        NaN comes of none.
     time : ndarray, shape (n,)
         [s] on the trajectory's clock.
     max_gap : float
@@ -32,6 +32,8 @@ def interpolate(trajectory: Trajectory, time: Array, max_gap: float = MAX_GAP) -
     Trajectory
         NaN where the trajectory has no rows that near; `source` is that of the row before.
     """
+    if not len(trajectory):
+        return _unknown(time)
     rows = trajectory.time
     before = np.clip(np.searchsorted(rows, time, side="right") - 1, 0, max(len(rows) - 2, 0))
     after = np.minimum(before + 1, len(rows) - 1)
@@ -58,3 +60,9 @@ def interpolate(trajectory: Trajectory, time: Array, max_gap: float = MAX_GAP) -
         horizontal=blend(trajectory.horizontal),
         source=trajectory.source[before],
     )
+
+
+def _unknown(time: Array) -> Trajectory:
+    n = len(time)
+    nan = np.full((n, 9), np.nan)
+    return Trajectory(time, nan[:, :3], nan[:, :3], nan[:, :3], nan, nan[:, 0], np.full(n, ""))

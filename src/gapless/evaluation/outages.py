@@ -9,6 +9,7 @@ from typing import Final
 
 import numpy as np
 
+from gapless.evaluation.ages import QUANTITIES, ages
 from gapless.evaluation.errors import Errors
 from gapless.evaluation.statistics import rms
 from gapless.recording import Array, Imu
@@ -18,7 +19,8 @@ BEFORE_MOTION: Final = "before motion + 30 s"
 NO_MOTION: Final = "no motion"
 LITTLE_TRUTH: Final = "too little truth"
 IMU_GAP: Final = "imu gap"
-LABELS: Final = (BEFORE_MOTION, NO_MOTION, LITTLE_TRUTH, IMU_GAP)
+BEFORE_DECISIONS: Final = "before decisions"
+LABELS: Final = (BEFORE_MOTION, NO_MOTION, LITTLE_TRUTH, IMU_GAP, BEFORE_DECISIONS)
 """Everything that sets an outage apart."""
 
 SETTLING: Final = 30.0
@@ -33,33 +35,35 @@ _IMU_GAP: Final = 0.5
 class OutageScore:
     """Errors in one outage; NaN where the truth does not tell.
 
+    Of each quantity there is the largest, the root mean square and the one at the last epoch: the
+    horizontal position error, the height error (the height offset of the truth taken off), the
+    error along the truth's course and across it [m], of the horizontal velocity [m/s], of the
+    heading [rad].
+
     Parameters
     ----------
     start, end : float
         [s] after the first IMU sample.
     labels : tuple of str
-        Why the outage is reported apart: "before motion + 30 s", "no motion", "too little truth",
-        "imu gap"; empty where it counts.
+        Why the outage is reported apart, of `LABELS`; empty where it counts.
     truth_epochs : int
         Epochs at which an error is known.
     distance : float
         Travelled in the outage [m].
     horizontal_max, horizontal_rmse, horizontal_end : float
-        Horizontal position error: largest, root mean square, and at the last epoch [m].
-    vertical_max : float
-        Largest height error [m], the height offset of the truth taken off.
-    along_max, cross_max : float
-        Largest error along the truth's course and across it [m].
-    velocity_max : float
-        Largest horizontal velocity error [m/s].
-    heading_max : float
-        Largest heading error [rad].
+    vertical_max, vertical_rmse, vertical_end : float
+    along_max, along_rmse, along_end : float
+    cross_max, cross_rmse, cross_end : float
+    velocity_max, velocity_rmse, velocity_end : float
+    heading_max, heading_rmse, heading_end : float
     percent : float
         `horizontal_max` in percent of `distance`; NaN without motion.
-    coverage : float
-        Share of epochs whose stated 95 % ellipse holds the truth.
+    coverage_50, coverage_95, coverage_99 : float
+        Share of epochs whose stated ellipse of that probability holds the truth.
     nees : float
         Mean horizontal NEES, two degrees of freedom.
+    inside_95_end : float
+        1 where the 95 % ellipse of the last epoch holds the truth, 0 where it does not.
     """
 
     start: float
@@ -71,13 +75,26 @@ class OutageScore:
     horizontal_rmse: float
     horizontal_end: float
     vertical_max: float
+    vertical_rmse: float
+    vertical_end: float
     along_max: float
+    along_rmse: float
+    along_end: float
     cross_max: float
+    cross_rmse: float
+    cross_end: float
     velocity_max: float
+    velocity_rmse: float
+    velocity_end: float
     heading_max: float
+    heading_rmse: float
+    heading_end: float
     percent: float
-    coverage: float
+    coverage_50: float
+    coverage_95: float
+    coverage_99: float
     nees: float
+    inside_95_end: float
 
     @property
     def counts(self) -> bool:
@@ -115,25 +132,25 @@ def score_outage(
     known = part.take(np.isfinite(part.horizontal))
     labels += (NO_MOTION,) * (standing and len(part) > 0)
     labels += (LITTLE_TRUTH,) * _too_little(known.time, begin, end)
-    horizontal_max = _largest(known.horizontal)
-    inside = known.inside()[np.isfinite(known.nees)]
+    aged = ages(errors, outage, start, height_offset)
+    sizes = {
+        f"{name}_{what}": of(getattr(aged, name))
+        for name in QUANTITIES
+        for what, of in (("max", _largest), ("rmse", rms), ("end", _last))
+    }
     return OutageScore(
         start=outage.start,
         end=outage.end,
         labels=labels,
         truth_epochs=len(known),
         distance=distance,
-        horizontal_max=horizontal_max,
-        horizontal_rmse=rms(known.horizontal),
-        horizontal_end=float(known.horizontal[-1]) if len(known) else math.nan,
-        vertical_max=_largest(known.position[:, 2] + height_offset),
-        along_max=_largest(known.along),
-        cross_max=_largest(known.cross),
-        velocity_max=_largest(np.hypot(known.velocity[:, 0], known.velocity[:, 1])),
-        heading_max=_largest(known.attitude[:, 2]),
-        percent=math.nan if standing or distance <= 0.0 else 100.0 * horizontal_max / distance,
-        coverage=float(inside.mean()) if len(inside) else math.nan,
+        **sizes,
+        percent=math.nan if standing or distance <= 0.0 else 100.0 * sizes["horizontal_max"] / distance,
+        coverage_50=_share(known, 0.50),
+        coverage_95=_share(known, 0.95),
+        coverage_99=_share(known, 0.99),
         nees=_mean(known.nees),
+        inside_95_end=_share(known.take(slice(-1, None)), 0.95),
     )
 
 
@@ -144,6 +161,7 @@ def score_outages(
     imu: Imu,
     first_motion: float,
     clock_offset: float = 0.0,
+    decided: float = 0.0,
 ) -> tuple[OutageScore, ...]:
     """Score every outage, those that are set apart too.
 
@@ -159,6 +177,8 @@ def score_outages(
         Logged GNSS time at which driving began [s].
     clock_offset : float
         What has to be added to logged GNSS stamps to land on the IMU clock [s].
+    decided : float
+        When what was decided from the data had been logged [s after the first IMU sample].
 
     Returns
     -------
@@ -166,15 +186,42 @@ def score_outages(
     """
     offset = height_offset(errors, outages, start + clock_offset)
     rise = 0.0 if math.isnan(offset) else offset
-    scores = []
-    for outage in outages:
-        labels: tuple[str, ...] = ()
-        if start + outage.start < first_motion + SETTLING:
-            labels += (BEFORE_MOTION,)
-        if _has_gap(imu, start + outage.start, start + outage.end):
-            labels += (IMU_GAP,)
-        scores.append(score_outage(errors, outage, start + clock_offset, rise, labels))
-    return tuple(scores)
+    return tuple(
+        score_outage(
+            errors, o, start + clock_offset, rise, outside_labels(o, start, imu, first_motion, decided)
+        )
+        for o in outages
+    )
+
+
+def outside_labels(
+    outage: Outage, start: float, imu: Imu, first_motion: float, decided: float = 0.0
+) -> tuple[str, ...]:
+    """Labels that can be told without a truth.
+
+    Parameters
+    ----------
+    outage : Outage
+    start : float
+        Time of the first IMU sample [s].
+    imu : Imu
+    first_motion : float
+        Logged GNSS time at which driving began [s].
+    decided : float
+        When what was decided from the data had been logged [s after the first IMU sample].
+
+    Returns
+    -------
+    tuple of str
+    """
+    labels: tuple[str, ...] = ()
+    if start + outage.start < first_motion + SETTLING:
+        labels += (BEFORE_MOTION,)
+    if outage.start < decided - 1e-3:  # s: rounded
+        labels += (BEFORE_DECISIONS,)
+    if _has_gap(imu, start + outage.start, start + outage.end):
+        labels += (IMU_GAP,)
+    return labels
 
 
 def height_offset(errors: Errors, outages: Sequence[Outage], start: float) -> float:
@@ -200,6 +247,16 @@ def height_offset(errors: Errors, outages: Sequence[Outage], start: float) -> fl
 def _largest(values: Array) -> float:
     x = np.abs(values[np.isfinite(values)])
     return float(x.max()) if len(x) else math.nan
+
+
+def _last(values: Array) -> float:
+    return abs(float(values[-1])) if len(values) else math.nan
+
+
+def _share(known: Errors, probability: float) -> float:
+    """Share of the epochs with a stated ellipse that it holds."""
+    inside = known.inside(probability)[np.isfinite(known.nees)]
+    return float(inside.mean()) if len(inside) else math.nan
 
 
 def _mean(values: Array) -> float:

@@ -3,18 +3,30 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Iterable
+from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass
+from typing import Final, NamedTuple
 
 import numpy as np
 
+from gapless.evaluation.ages import Ages, ages
 from gapless.evaluation.errors import Errors, at_antenna, gnss_truth, solution_errors
-from gapless.evaluation.motion import first_motion
-from gapless.evaluation.outages import LABELS, OutageScore, height_offset, score_outages
+from gapless.evaluation.outages import (
+    LABELS,
+    OutageScore,
+    height_offset,
+    outside_labels,
+    score_outage,
+    score_outages,
+)
 from gapless.evaluation.statistics import Consistency, Spread, consistency, rms, spread
-from gapless.recording import Recording
+from gapless.motion import first_motion
+from gapless.recording import Recording, Trajectory
 from gapless.scenarios import Outage, withheld
 from gapless.solution import Solution
+
+DECISIONS_TAKEN: Final = "decisions taken late"
+"""The decision that says that an outage had begun before anything could be decided."""
 
 
 @dataclass(frozen=True)
@@ -97,9 +109,9 @@ class Scores:
     @property
     def coverage(self) -> float:
         """Share of the pool's truth epochs that the stated 95 % ellipses hold; NaN without any."""
-        told = [o for o in self.pool if not math.isnan(o.coverage)]
+        told = [o for o in self.pool if not math.isnan(o.coverage_95)]
         epochs = sum(o.truth_epochs for o in told)
-        return sum(o.coverage * o.truth_epochs for o in told) / epochs if epochs else math.nan
+        return sum(o.coverage_95 * o.truth_epochs for o in told) / epochs if epochs else math.nan
 
 
 def score(solution: Solution, recording: Recording) -> Scores:
@@ -118,29 +130,101 @@ def score(solution: Solution, recording: Recording) -> Scores:
     -------
     Scores
     """
-    late, late_velocity = (_decided(solution, f"clock offset, {of}") for of in ("position", "velocity"))
-    fixes = gnss_truth(recording.gnss, late, late_velocity)
-    reference, found, offset = recording.reference, solution.trajectory, 0.0
-    if reference is None:
-        truth, found = fixes, at_antenna(found, recording.lever_arm)
-    else:
-        truth, offset = reference, late if recording.reference_clock == "gnss" else 0.0
-    errors = solution_errors(found, truth, offset)
+    truth = _truth(recording, solution)
+    errors = _errors(solution.trajectory, truth, recording)
     outages = [Outage(a, b) for a, b in solution.outages]
-    outside = ~withheld(errors.time, outages, solution.start + late)
-    rise = height_offset(errors, outages, solution.start + late)
+    outside = ~withheld(errors.time, outages, solution.start + truth.late)
+    rise = height_offset(errors, outages, solution.start + truth.late)
+    begun, decided = first_motion(recording), _decided(solution, DECISIONS_TAKEN)
     return Scores(
-        truth="gnss" if reference is None else "reference",
-        statement=_STATEMENTS[reference is None],
-        clock_offset=late if reference is None else offset,
+        truth="gnss" if recording.reference is None else "reference",
+        statement=_STATEMENTS[recording.reference is None],
+        clock_offset=truth.clock_offset,
         height_offset=rise,
         errors=errors,
         aided=accuracy(errors.take(outside), rise),
-        fixes_rmse=math.nan
-        if reference is None
-        else rms(solution_errors(reference, fixes, -offset).horizontal),
-        outages=score_outages(errors, outages, solution.start, recording.imu, first_motion(recording), late),
+        fixes_rmse=_fixes_rmse(truth, recording),
+        outages=score_outages(errors, outages, solution.start, recording.imu, begun, truth.late, decided),
     )
+
+
+def score_pieces(
+    whole: Solution, pieces: Sequence[tuple[Outage, Trajectory]], recording: Recording
+) -> tuple[Scores, tuple[tuple[OutageScore, Ages], ...]]:
+    """Score outages that each have a trajectory of their own.
+
+    Parameters
+    ----------
+    whole : Solution
+        With every fix there is: it gives the decisions and the height offset.
+    pieces : sequence of (Outage, Trajectory)
+        Each trajectory covers its outage.
+    recording : Recording
+
+    Returns
+    -------
+    whole : Scores
+        Of the solution with every fix.
+    pieces : tuple of (OutageScore, Ages)
+    """
+    scores, truth, begun = score(whole, recording), _truth(recording, whole), first_motion(recording)
+    rise = 0.0 if math.isnan(scores.height_offset) else scores.height_offset
+    decided, start = _decided(whole, DECISIONS_TAKEN), whole.start
+    found = []
+    for outage, trajectory in pieces:
+        errors = _errors(trajectory, truth, recording)
+        scored = Outage(outage.start, outage.until)
+        labels = outside_labels(scored, start, recording.imu, begun, decided)
+        one = score_outage(errors, scored, start + truth.late, rise, labels)
+        found.append((one, ages(errors, scored, start + truth.late, rise)))
+    return scores, tuple(found)
+
+
+def outage_ages(solution: Solution, scores: Scores) -> tuple[Ages, ...]:
+    """Errors by age, of every outage of a scored solution.
+
+    Parameters
+    ----------
+    solution : Solution
+    scores : Scores
+
+    Returns
+    -------
+    tuple of Ages
+        In the order of `scores.outages`.
+    """
+    rise = 0.0 if math.isnan(scores.height_offset) else scores.height_offset
+    begin = solution.start + _decided(solution, "clock offset, position")
+    return tuple(ages(scores.errors, Outage(o.start, o.end), begin, rise) for o in scores.outages)
+
+
+class _Truth(NamedTuple):
+    """What a solution is scored against, and by how much its stamps and those of the fixes are late."""
+
+    trajectory: Trajectory
+    fixes: Trajectory
+    clock_offset: float
+    late: float
+
+
+def _truth(recording: Recording, solution: Solution) -> _Truth:
+    late, late_velocity = (_decided(solution, f"clock offset, {of}") for of in ("position", "velocity"))
+    fixes = gnss_truth(recording.gnss, late, late_velocity)
+    if recording.reference is None:
+        return _Truth(fixes, fixes, late, late)
+    return _Truth(recording.reference, fixes, late if recording.reference_clock == "gnss" else 0.0, late)
+
+
+def _errors(trajectory: Trajectory, truth: _Truth, recording: Recording) -> Errors:
+    if recording.reference is None:  # fixes are on the IMU clock already, and hold for the antenna
+        return solution_errors(at_antenna(trajectory, recording.lever_arm), truth.trajectory)
+    return solution_errors(trajectory, truth.trajectory, truth.clock_offset)
+
+
+def _fixes_rmse(truth: _Truth, recording: Recording) -> float:
+    if recording.reference is None:
+        return math.nan
+    return rms(solution_errors(recording.reference, truth.fixes, -truth.clock_offset).horizontal)
 
 
 def accuracy(errors: Errors, height_offset: float = 0.0) -> Accuracy:

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from gapless.errors import ConfigError
-from gapless.evaluation.motion import offset_ned
+from gapless.motion import offset_ned
 from gapless.recording import Array
 from gapless.units import DEG
 

@@ -11,14 +11,14 @@ import numpy as np
 
 from gapless import __version__
 from gapless.evaluation import Scores, consistency
-from gapless.evaluation.motion import horizontal_velocity, motion
+from gapless.motion import horizontal_velocity, motion
 from gapless.recording import Trajectory
 from gapless.reports.numbers import known, measured, plain
 from gapless.reports.quantities import state
 from gapless.solution import Decision, Innovations, Solution
 from gapless.units import DEG
 
-_ANGLES = ("roll_rmse", "pitch_rmse", "heading_rmse", "heading_max")
+_ANGLES = ("roll_rmse", "pitch_rmse", "heading_rmse", "heading_max", "heading_end")
 
 
 def summarise(solution: Solution, scores: Scores | None = None) -> dict[str, Any]:

@@ -162,7 +162,7 @@ def _outage_row(index: int, o: Summary) -> list[Cell]:
         number(known(o["heading_max_deg"]), "", 2) + "°",
         distance(known(o["distance"])),
         number(known(o["percent"]), "%", 2),
-        percent(known(o["coverage"])),
+        percent(known(o["coverage_95"])),
     )
     return [name, *cells, escape(", ".join(o["labels"])) or DASH]
 

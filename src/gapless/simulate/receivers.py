@@ -9,7 +9,7 @@ import numpy as np
 from numpy.random import Generator
 from numpy.typing import NDArray
 
-from gapless import earth
+from gapless.motion import displace
 from gapless.recording import Gnss, Odometer
 from gapless.sensors.noise import gauss_markov
 from gapless.simulate.motion import Vehicle, point
@@ -160,26 +160,6 @@ def odometer(path: Path, sensor: WheelSensor, rng: Generator) -> Odometer:
     if sensor.quantum:
         speed = sensor.quantum * np.rint(speed / sensor.quantum)
     return Odometer(time, speed)
-
-
-def displace(lla: Array, ned: Array) -> Array:
-    """Positions moved by metres.
-
-    Parameters
-    ----------
-    lla : ndarray, shape (n, 3)
-        Latitude, longitude [rad], height [m].
-    ned : ndarray, shape (n, 3)
-        North, east, down along the ellipsoid [m].
-
-    Returns
-    -------
-    ndarray, shape (n, 3)
-    """
-    r_m, r_n = earth.radii(np.sin(lla[:, 0]))
-    h = lla[:, 2]
-    scale = np.column_stack([1.0 / (r_m + h), 1.0 / ((r_n + h) * np.cos(lla[:, 0])), np.full(len(lla), -1.0)])
-    return np.asarray(lla + ned * scale)
 
 
 def spikes(

@@ -22,6 +22,8 @@ from gapless.systems.recipe import System
 
 Progress = Callable[[float], None]
 """Told the time that navigation has reached [s after the first sample]."""
+DECISIONS_TAKEN_LATE = "decisions taken late"
+"""Names the decision that tells that an outage had begun before anything could be decided."""
 
 
 def fuse(
@@ -31,6 +33,7 @@ def fuse(
     rate: float = 10.0,
     causal: bool = False,
     progress: Progress | None = None,
+    decided: Decided | None = None,
 ) -> Solution:
     """Navigate a recording.
 
@@ -47,6 +50,8 @@ def fuse(
         Find clock offsets and mounting on the way, from the past of each moment only. Otherwise
         they are found in a first pass over what was logged before the first outage.
     progress : callable, optional
+    decided : Decided, optional
+        What `decide_before` found, where it is known already.
 
     Returns
     -------
@@ -64,29 +69,66 @@ def fuse(
     if causal:
         navigator, decided = _on_the_way(open_sky, system, rate, progress)
     else:
-        decided = _decide_before(open_sky, system, outages)
-        navigator = Navigator(_settings(open_sky, system, decided, rate))
-        _fold(navigator, events(open_sky, stamps(system, decided.offsets)), recording.start, progress)
+        decided = decided or decide_before(open_sky, system, outages)
+        navigator = Navigator(settings_for(open_sky, system, decided, rate))
+        fold(navigator, events(open_sky, stamps(system, decided.offsets)), recording.start, progress)
     return collect(recording, system, outages, navigator, decided)
 
 
-def _decide_before(open_sky: Recording, system: System, outages: tuple[Outage, ...]) -> Decided:
+def decide_before(open_sky: Recording, system: System, outages: tuple[Outage, ...]) -> Decided:
     """Decide from what was logged before the first outage that interrupts navigation.
 
     An outage before there was half a minute of it (a car still parked) leaves nothing to decide from
     and nothing to bridge: the next one counts.
+
+    Parameters
+    ----------
+    open_sky : Recording
+        As `withhold_from` leaves it.
+    system : System
+    outages : tuple of Outage
+
+    Returns
+    -------
+    Decided
     """
+    system = graded(system, open_sky)
     horizons = [open_sky.start + start for start in sorted(o.start for o in outages)] or [np.inf]
     for horizon in horizons:
         decided = decide(open_sky, system, horizon)
         if decided.span > 0.0:
             break
+    if horizon > horizons[0]:
+        late = Decision(
+            DECISIONS_TAKEN_LATE,
+            round(horizon - open_sky.start, 3),
+            "s after the first sample",
+            "data",
+            "before the outages that began earlier there was too little motion to decide from",
+        )
+        decided = replace(decided, decisions=(*decided.decisions, late))
     return decided
 
 
-def _settings(
+def settings_for(
     recording: Recording, system: System, decided: Decided, rate: float, lateness: float = 0.0
 ) -> Settings:
+    """Settings of the navigator of a run.
+
+    Parameters
+    ----------
+    recording : Recording
+    system : System
+    decided : Decided
+    rate : float
+        Rows per second.
+    lateness : float
+        For how long past states are kept at least [s].
+
+    Returns
+    -------
+    Settings
+    """
     built = settings(system, recording, decided.offsets, decided.mounting, decided.gyro_density, 1.0 / rate)
     return replace(built, lateness=max(built.lateness, lateness))
 
@@ -106,7 +148,17 @@ def withhold_from(recording: Recording, outages: Iterable[Outage]) -> Recording:
     return replace(recording, gnss=withhold(recording.gnss, tuple(outages), recording.start))
 
 
-def _fold(navigator: Navigator, feed: Iterable[Event], start: float, progress: Progress | None) -> None:
+def fold(navigator: Navigator, feed: Iterable[Event], start: float, progress: Progress | None = None) -> None:
+    """Step through events.
+
+    Parameters
+    ----------
+    navigator : Navigator
+    feed : iterable of Event
+    start : float
+        Time of the first IMU sample [s].
+    progress : callable, optional
+    """
     told = 0.0
     for event in feed:
         navigator.step(event)
@@ -125,10 +177,10 @@ def _on_the_way(
     """Decide at fixed data times from the past alone; the navigator goes on with what was decided."""
     cuts = [recording.start + s for s in STAGES if s < recording.duration]
     decided = decide(recording, system, recording.start)
-    navigator = Navigator(_settings(recording, system, decided, rate, lateness=1.6))
+    navigator = Navigator(settings_for(recording, system, decided, rate, lateness=1.6))
     for begin, end in zip([-np.inf, *cuts], [*cuts, np.inf], strict=True):
         feed = events(recording, stamps(system, decided.offsets), begin, end)
-        _fold(navigator, feed, recording.start, progress)
+        fold(navigator, feed, recording.start, progress)
         if np.isfinite(end):
             decided = decide(recording, system, end)
     return navigator, decided
@@ -181,7 +233,7 @@ def collect(
             *_alignments(journal, recording.start),
             *_stops(journal),
         ),
-        outages=tuple((o.start, o.end) for o in outages),
+        outages=tuple((o.start, o.until) for o in outages),
         start=recording.start,
         notes=recording.notes,
     )

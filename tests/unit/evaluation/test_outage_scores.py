@@ -80,7 +80,7 @@ def test_coverage_counts_the_truth_in_the_stated_ellipse(drive, origin):
     scores = score(solve(found, [(100.0, 160.0)]), replace(rec, reference=reference))
     (one,) = scores.outages
     # 1 sd is 1 m each way, so the 95 % circle has 2.448 m: ages 0 to 4 of 60 are inside.
-    assert one.coverage == pytest.approx(5 / 60)
+    assert one.coverage_95 == pytest.approx(5 / 60)
     assert one.nees == pytest.approx(np.mean((0.5 * np.arange(60.0)) ** 2), rel=1e-3)
     assert scores.truth == "reference"
     assert scores.aided.horizontal_rmse < 1e-6  # m, rounding: nothing is planted outside
@@ -144,7 +144,7 @@ def test_an_outage_without_any_truth_is_nan_not_zero(drive):
     (one,) = score(solve(found, [(100.0, 120.0)]), replace(rec, gnss=rec.gnss.take(keep))).outages
     assert one.truth_epochs == 0
     assert LITTLE_TRUTH in one.labels
-    assert np.isnan([one.horizontal_max, one.horizontal_end, one.coverage, one.nees]).all()
+    assert np.isnan([one.horizontal_max, one.horizontal_end, one.coverage_95, one.nees]).all()
     assert one.distance == pytest.approx(200.0, abs=1e-6)
 
 

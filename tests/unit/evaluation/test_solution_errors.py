@@ -5,7 +5,7 @@ import pytest
 from gapless import earth
 from gapless.evaluation.errors import at_antenna, gnss_truth, solution_errors
 from gapless.evaluation.interpolation import interpolate
-from gapless.evaluation.motion import offset_ned
+from gapless.motion import offset_ned
 from gapless.recording import Gnss
 
 

@@ -1,4 +1,4 @@
-"""How a trip moved, as GNSS or a reference tells it: velocity, speed, course, distance, first motion."""
+"""How a trip moved, as GNSS or a reference tells it: offsets, velocity, course, distance, first motion."""
 
 from __future__ import annotations
 
@@ -64,6 +64,26 @@ def offset_ned(lla: Array, origin: Array) -> Array:
     north = d_lat * (r_m + middle[:, 2])
     east = d_lon * (r_n + middle[:, 2]) * np.cos(lat)
     return np.column_stack([north, east, origin[:, 2] - lla[:, 2]])
+
+
+def displace(lla: Array, ned: Array) -> Array:
+    """Positions moved by metres.
+
+    Parameters
+    ----------
+    lla : ndarray, shape (n, 3)
+        Latitude, longitude [rad], height [m].
+    ned : ndarray, shape (n, 3)
+        North, east, down along the ellipsoid [m].
+
+    Returns
+    -------
+    ndarray, shape (n, 3)
+    """
+    r_m, r_n = earth.radii(np.sin(lla[:, 0]))
+    h = lla[:, 2]
+    scale = np.column_stack([1.0 / (r_m + h), 1.0 / ((r_n + h) * np.cos(lla[:, 0])), np.full(len(lla), -1.0)])
+    return np.asarray(lla + ned * scale)
 
 
 def velocity_from_positions(time: Array, lla: Array) -> Array:
