@@ -144,8 +144,9 @@ def job(
 
     with ThreadPoolExecutor(1) as reader:  # it waits for the disk and for pyarrow's own threads
         reading = reader.submit(read, *recording)
-        import gapless.systems.fuse  # noqa: F401 - what navigates takes as long to load
+        from gapless.navigator import load_kernels  # what navigates takes as long to load
 
+        load_kernels()
         found = reading.result()
     return Job(found, recipe, plan([*outage, *outages], found), causal)
 

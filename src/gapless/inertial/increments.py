@@ -95,6 +95,7 @@ def sculling(dtheta: Three, dvel: Three, prev_theta: Three, prev_vel: Three, fac
     )
 
 
+@inline
 def split(increment: Any, previous: Any, before: float, now: float, part: float) -> Any:
     """First part of an increment, under the same linear model.
 

@@ -128,7 +128,7 @@ def execute(run: Run) -> Row:
         return failed(run, error)
     try:
         navigate = smooth if run.smooth else fuse
-        solution = navigate(log, run.recipe, plan(run.scenario, log.duration))
+        solution = navigate(log, run.recipe, plan(run.scenario, log))
         return _scored(run, log, score(solution, log))
     except GaplessError as error:
         aligned = False if isinstance(error, AlignmentError) else None

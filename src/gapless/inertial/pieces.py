@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from gapless._numba import kernel
 from gapless.events import EPS, ImuBlock, Reading
 from gapless.inertial import propagate as at
 from gapless.inertial.increments import split
@@ -94,10 +95,18 @@ def pieces(block: ImuBlock, pending: Sequence[Reading], memory: Array) -> Iterat
 
 def _cut(sample: ImuBlock, due: float, part: float, memory: Array) -> tuple[ImuBlock, ImuBlock]:
     """One sample as two, the first of length `part`."""
-    dt, before = float(sample.dt[0]), float(memory[at.PREV_DT])
-    firsts = []
-    for increment, i in ((sample.dtheta[0], at.PREV_THETA), (sample.dvel[0], at.PREV_VEL)):
-        firsts.append(split(increment, memory[i : i + 3], before, dt, part))
-    head = ImuBlock(np.array([due]), np.array([part]), firsts[0][None], firsts[1][None])
-    rest = sample.dtheta - firsts[0], sample.dvel - firsts[1]
-    return head, ImuBlock(sample.time, np.array([dt - part]), *rest)
+    first, rest = _halves(sample.dt, sample.dtheta, sample.dvel, memory, part)
+    head = ImuBlock(np.full(1, due), first[0, :1], first[1:2], first[2:])
+    return head, ImuBlock(sample.time, rest[0, :1], rest[1:2], rest[2:])
+
+
+@kernel
+def _halves(dt: Array, dtheta: Array, dvel: Array, memory: Array, part: float) -> tuple[Array, Array]:
+    """Rows: length of the interval (repeated), dtheta, dvel; of the first part and of the rest."""
+    first, rest, now = np.empty((3, 3)), np.empty((3, 3)), dt[0]
+    before = memory[at.PREV_DT]
+    first[0], rest[0] = part, now - part
+    first[1] = split(dtheta[0], memory[at.PREV_THETA : at.PREV_THETA + 3], before, now, part)
+    first[2] = split(dvel[0], memory[at.PREV_VEL : at.PREV_VEL + 3], before, now, part)
+    rest[1], rest[2] = dtheta[0] - first[1], dvel[0] - first[2]
+    return first, rest
