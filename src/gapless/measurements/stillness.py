@@ -29,6 +29,8 @@ from gapless.units import DEG
 SLOTS = 15
 """Ticks in the window."""
 STILL, MOVING = 0, 1
+GRAVITY = 9.8
+"""Enough for what a tilt feigns [m/s^2]."""
 
 
 @inline
@@ -86,6 +88,24 @@ def log_odds(spread: Array, mean: Array, var: Array) -> tuple[Any, Any]:
     return odds + fit, fit
 
 
+@inline
+def _acceleration_variance(c: Any, p: Array, row: int) -> Any:
+    """Of the horizontal acceleration that tilt and accelerometer bias feign, north and east together.
+
+    Its error is g phi_e + C ba in the north and -g phi_n + C ba in the east (Groves 2013, eq. 14.67).
+    """
+    total = 0.0
+    for axis in range(2):
+        tilt, lean = 7 - axis, GRAVITY * (1.0 - 2.0 * axis)
+        total += lean * lean * p[tilt * row + tilt]
+        for i in range(3):
+            a = c[3 * axis + i]
+            total += 2.0 * lean * a * p[tilt * row + 12 + i]
+            for j in range(3):
+                total += a * c[3 * axis + j] * p[(12 + i) * row + 12 + j]
+    return max(total, 0.0)
+
+
 @kernel
 def stands(
     x: Array,
@@ -123,7 +143,8 @@ def stands(
     odds : float
         Least log odds.
     limits : ndarray, shape (3,)
-        Largest rate [rad/s], acceleration [m/s^2], squared Mahalanobis norm of the velocity.
+        Largest rate [rad/s]; acceleration beyond two of its deviations, for a tilt that the filter is
+        not sure of feigns one [m/s^2]; squared Mahalanobis norm of the velocity.
 
     Returns
     -------
@@ -141,7 +162,8 @@ def stands(
         return False
     if smooth[0] ** 2 + smooth[1] ** 2 + smooth[2] ** 2 > limits[0] ** 2:
         return False
-    if smooth[3] ** 2 + smooth[4] ** 2 > limits[1] ** 2:
+    doubt = np.sqrt(_acceleration_variance(c, p, row))
+    if smooth[3] ** 2 + smooth[4] ** 2 > (limits[1] + 2.0 * doubt) ** 2:
         return False
     nn, ee, ne = p[3 * row + 3] + 0.04, p[4 * row + 4] + 0.04, p[3 * row + 4]
     surprise = (ee * x[3] ** 2 - 2.0 * ne * x[3] * x[4] + nn * x[4] ** 2) / (nn * ee - ne * ne)

@@ -132,3 +132,11 @@ def test_an_interrupt_leaves_nothing(shell, drive, tmp_path, monkeypatch):
     monkeypatch.setattr(bench, "execute", interrupted)
     shell("bench", drive, *PLAN, "--jobs", 1, "--out", tmp_path / "out", code=130)
     assert not (tmp_path / "out").exists()
+
+
+def test_one_system_alone_has_a_page_too(shell, drive, tmp_path):
+    told = shell(
+        "bench", drive, "--systems", "ins", "--plan", "100:130", "--jobs", "1", "--out", tmp_path / "alone"
+    )
+    assert "Protocol passes" in told.output
+    assert "ins" in (tmp_path / "alone" / "report.html").read_text("utf-8")

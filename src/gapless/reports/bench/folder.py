@@ -140,6 +140,8 @@ def _columns(path: Path, wanted: tuple[str, ...]) -> Columns:
         raise ConfigError(f"{path}: not there; run gapless bench again") from error
     except (OSError, pa.ArrowInvalid) as error:
         raise ConfigError(f"{path}: not Parquet ({error}); run gapless bench again") from error
+    if not table.num_rows:  # one system has no pairs, and nothing to name their columns by
+        return {name: np.array([]) for name in wanted}
     missing = [name for name in wanted if name not in table.column_names]
     if missing:
         raise ConfigError(f"{path}: lacks the columns {', '.join(missing)}; run gapless bench again")
