@@ -1,4 +1,4 @@
-"""Run the README's Python again; put what it prints, its picture and the recipe's defaults in place.
+"""Run the pages' code again; put what it prints, the picture and the recipe's defaults in place.
 
 python docs/refresh.py
 """
@@ -14,9 +14,13 @@ from pathlib import Path
 from typing import Any
 
 README = Path(__file__).parents[1] / "README.md"
+TUTORIAL = Path(__file__).parent / "tutorial.md"
 CONFIGURATION = Path(__file__).parent / "configuration.md"
 _CODE = re.compile(r"```python\n(.*?)```", re.DOTALL)
 _ROW = re.compile(r"\| `(\w+)` \| `.*?` \|")
+_BLOCK = re.compile(r"```(\w+)\n(.*?)```", re.DOTALL)
+_PASSING = re.compile(r"^(wrote .*|\d+ outages scored in .*)\n", re.MULTILINE)
+_EACH = re.compile(r"^urban-consumer-\d+, protocol.*?(?=^Prefix law)", re.MULTILINE | re.DOTALL)
 _OUTPUT = re.compile(r"(```text\n)(.*?)(```)", re.DOTALL)
 
 
@@ -64,6 +68,52 @@ def run() -> tuple[str, dict[str, Any]]:
     return said.getvalue(), names
 
 
+def walk(page: str) -> str:
+    """The tutorial with what its commands print today.
+
+    Recipes that it shows are saved under their names, commands are run in a folder that is thrown
+    away, and a block of text takes what the command before it printed, but for files, seconds and the tables
+    of single drives.
+
+    Parameters
+    ----------
+    page : str
+
+    Returns
+    -------
+    str
+    """
+    from click.testing import CliRunner
+
+    from gapless.cli import gapless
+
+    said, here, wide = "", Path.cwd(), {"COLUMNS": "100"}
+    parts = _BLOCK.split(page)
+    with tempfile.TemporaryDirectory() as folder:
+        os.chdir(folder)
+        try:
+            for k in range(1, len(parts), 3):
+                kind, text = parts[k], parts[k + 1]
+                if kind == "toml":
+                    name = re.search(r'^name = "(.+)"', text, re.MULTILINE)
+                    assert name is not None, "a recipe in the tutorial has a name"
+                    Path(f"{name[1]}.toml").write_text(text, "utf-8")
+                elif kind == "sh":
+                    words = text.split()[1:]
+                    result = CliRunner().invoke(gapless, words, prog_name="gapless", env=wide)
+                    assert result.exit_code == 0, result.output
+                    told = _EACH.sub("(and a table for each drive)\n\n", _PASSING.sub("", result.output))
+                    said = told.strip() + "\n"
+                elif kind == "text":
+                    parts[k + 1] = said
+        finally:
+            os.chdir(here)
+    body = parts[:1]
+    for k in range(1, len(parts), 3):
+        body.append(f"```{parts[k]}\n{parts[k + 1]}```{parts[k + 2]}")
+    return "".join(body)
+
+
 def with_defaults(page: str) -> str:
     """The configuration page with the defaults of today; its keys and words stay.
 
@@ -93,12 +143,14 @@ def with_defaults(page: str) -> str:
 
 
 def main() -> None:
-    """Output, defaults, picture."""
+    """Output, tutorial, defaults, picture."""
     printed, _ = run()
     text = README.read_text("utf-8")
     README.write_text(_OUTPUT.sub(lambda m: m[1] + printed + m[3], text, count=1), "utf-8")
     print(printed, end="")
     CONFIGURATION.write_text(with_defaults(CONFIGURATION.read_text("utf-8")), "utf-8")
+
+    TUTORIAL.write_text(walk(TUTORIAL.read_text("utf-8")), "utf-8")
 
     import make_picture
 

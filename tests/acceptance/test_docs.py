@@ -111,3 +111,12 @@ def test_quickstart_in_python_runs(tmp_path, monkeypatch, capsys):
     exec(framed, names)
     # logged x is right, so it lands on the second axis
     assert np.allclose(names["recording"].imu.dtheta[:, 1], drive.imu.dtheta[:, 0], rtol=1e-12, atol=0.0)
+
+
+def test_tutorial_prints_what_it_says(refresh):
+    page = refresh.TUTORIAL.read_text("utf-8")
+    again = refresh.walk(page)
+    # figures move from one processor to the next, and with them how wide a column is: make docs
+    assert [NUMBER.sub("#", word) for word in again.split() if not word.startswith("--")] == [
+        NUMBER.sub("#", word) for word in page.split() if not word.startswith("--")
+    ]

@@ -73,7 +73,7 @@ def _leave(ctx: click.Context, line: str, code: int) -> None:
 @click.group(cls=Verbs, context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 80})
 @click.version_option(__version__, message="%(prog)s %(version)s")
 def gapless() -> None:
-    r"""Fuse an IMU with GNSS, and keep navigating when GNSS goes silent.
+    """Fuse an IMU with GNSS, and keep navigating when GNSS goes silent.
 
     A first try, without data of your own:
 
@@ -81,7 +81,7 @@ def gapless() -> None:
       gapless simulate --out drive
       gapless inspect drive
       gapless fuse drive --outage 240:300 --out solution
-    """
+    """  # noqa: D301 - click's mark for lines that stay as they are, not a backslash
 
 
 for _verb in (inspect, fuse, bench, report, simulate, convert, sweep):

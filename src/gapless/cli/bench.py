@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
+from shutil import get_terminal_size
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -108,7 +109,8 @@ def bench(
     from gapless.laboratory.bench import bench as run
     from gapless.laboratory.bench import plan_jobs
     from gapless.laboratory.folder import writers
-    from gapless.laboratory.tables import as_text, tables
+    from gapless.laboratory.render import as_text
+    from gapless.laboratory.tables import tables
     from gapless.reports.bench import write_bench_report
     from gapless.reports.summary import summarise
 
@@ -120,7 +122,7 @@ def bench(
     files = writers(results, {name: _told(value) for name, value in arguments.items()})
     write_together(out, files)
     page = write_bench_report(out)
-    click.echo(as_text(tables(results)))
+    click.echo(as_text(tables(results), get_terminal_size((140, 24)).columns))
     click.echo(f"{len(results.outages)} outages scored in {results.seconds:.0f} s")
     click.echo("\n".join(f"wrote {path}" for path in (*(out / name for name in files), page)))
 

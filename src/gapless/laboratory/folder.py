@@ -13,8 +13,9 @@ import numpy as np
 
 from gapless import __version__
 from gapless.laboratory.bench import Results
+from gapless.laboratory.render import as_latex, as_markdown, as_text
 from gapless.laboratory.rows import Block, Row
-from gapless.laboratory.tables import as_latex, as_markdown, as_text, tables
+from gapless.laboratory.tables import tables
 
 if TYPE_CHECKING:
     import pyarrow as pa

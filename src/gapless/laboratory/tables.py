@@ -1,9 +1,9 @@
-"""Leaderboard and pairs as tables: text, Markdown, LaTeX. Each names its protocol."""
+"""Leaderboard and pairs as tables; each names its protocol."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Sequence
 from typing import Final, NamedTuple
 
 from gapless.laboratory.bench import Results
@@ -152,11 +152,17 @@ def _by_recording(protocol: str, rows: Sequence[Row], marks: dict[str, str]) -> 
 
 def _checks(results: Results, marks: dict[str, str]) -> Table:
     cells = tuple(
-        (marks[system], said, ", ".join(sorted(name for name, what in found.items() if what == said)))
+        (marks[system], said, _names(found, said))
         for system, found in results.checks.items()
         for said in dict.fromkeys(found.values())
     )
     return Table("Prefix law", ("system", "outcome", "recordings"), cells)
+
+
+def _names(found: dict[str, str], said: str) -> str:
+    """Recordings of one outcome; "all 8" where there are many and they agree."""
+    names = sorted(name for name, what in found.items() if what == said)
+    return f"all {len(names)}" if len(names) == len(found) > 3 else ", ".join(names)
 
 
 def _metres(value: float) -> str:
@@ -183,106 +189,3 @@ def _p(value: float) -> str:
     if math.isnan(value):
         return "-"
     return "< 0.0001" if value < 1e-4 else f"{value:.4f}"
-
-
-def as_text(found: Iterable[Table]) -> str:
-    """Tables for a terminal.
-
-    Parameters
-    ----------
-    found : iterable of Table
-
-    Returns
-    -------
-    str
-    """
-    import textwrap
-
-    parts = []
-    for table in found:
-        lines = [table.head, *table.rows]
-        widths = [max(len(line[i]) for line in lines) for i in range(len(table.head))]
-        words = _words(table)
-        pad: list[Callable[[str, int], str]] = [str.ljust if w else str.rjust for w in words]
-        body = [
-            "  ".join(p(cell, w) for p, cell, w in zip(pad, line, widths, strict=True)).rstrip()
-            for line in lines
-        ]
-        body.insert(1, "-" * max(len(line) for line in body))
-        parts.append("\n".join([table.title, *body, *textwrap.wrap(table.note, 110)]))
-    return "\n\n".join(parts) + "\n"
-
-
-def _words(table: Table) -> list[bool]:
-    """Columns that hold words stand left."""
-    left = {"outages", "system", "label", "says", "outcome", "recordings"}
-    return [name in left for name in table.head]
-
-
-def as_markdown(found: Iterable[Table]) -> str:
-    """Tables in Markdown.
-
-    Parameters
-    ----------
-    found : iterable of Table
-
-    Returns
-    -------
-    str
-    """
-    parts = []
-    for table in found:
-        rule = ["---" if words else "---:" for words in _words(table)]
-        lines = [" | ".join(_escaped(cell) for cell in line) for line in (table.head, *table.rows)]
-        lines.insert(1, " | ".join(rule))
-        body = "\n".join(f"| {line} |" for line in lines)
-        parts.append(f"## {table.title}\n\n{body}\n" + (f"\n{_escaped(table.note)}\n" if table.note else ""))
-    return "\n".join(parts)
-
-
-def _escaped(cell: str) -> str:
-    return cell.replace("|", "\\|").replace("*", "\\*").replace("<", "&lt;")
-
-
-def as_latex(found: Iterable[Table]) -> str:
-    """Tables in LaTeX, for the package booktabs.
-
-    Parameters
-    ----------
-    found : iterable of Table
-
-    Returns
-    -------
-    str
-    """
-    parts = []
-    for table in found:
-        columns = "".join("l" if words else "r" for words in _words(table))
-        lines = [" & ".join(_tex(cell) for cell in line) + r" \\" for line in (table.head, *table.rows)]
-        parts.append(
-            "\n".join(
-                [
-                    r"\begin{table}",
-                    rf"\caption{{{_tex(table.title)}. {_tex(table.note)}}}".replace(". }", ".}"),
-                    rf"\begin{{tabular}}{{{columns}}}",
-                    r"\toprule",
-                    lines[0],
-                    r"\midrule",
-                    *lines[1:],
-                    r"\bottomrule",
-                    r"\end{tabular}",
-                    r"\end{table}",
-                ]
-            )
-        )
-    return "\n\n".join(parts) + "\n"
-
-
-_TEX: Final = {
-    "\\": r"\textbackslash{}", "&": r"\&", "%": r"\%", "$": r"\$", "#": r"\#", "_": r"\_", "{": r"\{",
-    "}": r"\}", "~": r"\textasciitilde{}", "^": r"\textasciicircum{}", "<": r"$<$",
-}  # fmt: skip
-
-
-def _tex(text: str) -> str:
-    return "".join(_TEX.get(letter, letter) for letter in text)

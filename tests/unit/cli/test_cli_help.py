@@ -25,6 +25,7 @@ def test_help_imports_nothing_heavy(verb):
 def test_help_fits_a_terminal(shell, verb):
     text = shell(*([verb] if verb else []), "--help").output
     assert max(map(len, text.splitlines())) <= 80
+    assert "\\" not in text  # click's marks are none of a reader's business
 
 
 def test_verbs_are_listed_whole_and_in_the_order_of_need(shell):

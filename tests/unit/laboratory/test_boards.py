@@ -10,8 +10,9 @@ from gapless.laboratory.bench import Results
 from gapless.laboratory.boards import leaderboard, pairs, set_apart
 from gapless.laboratory.folder import writers
 from gapless.laboratory.methods import Function
+from gapless.laboratory.render import as_latex, as_markdown, as_text
 from gapless.laboratory.study import ladder, scenario, stored
-from gapless.laboratory.tables import as_latex, as_markdown, as_text, tables
+from gapless.laboratory.tables import tables
 
 
 def row(system, start, error, recording="a", labels="", protocol="passes", group="60 s"):
@@ -100,6 +101,16 @@ def test_every_table_of_scores_names_its_protocol_and_losses_are_shown(results):
     for line in lines:
         if line.startswith("60 s") and "[" in line:
             assert ("good*" in line) or ("good" not in line)
+
+
+def test_in_a_narrow_terminal_a_table_goes_on_below(results):
+    found = tables(results)
+    narrow = as_text(found, 80)
+    assert max(map(len, narrow.splitlines())) <= 80
+    for table in found:
+        for row in table.rows:
+            assert all(cell in narrow for cell in row)
+    assert narrow.count("outages  system") > as_text(found).count("outages  system")
 
 
 def test_markdown_and_latex_hold_the_same_cells(results):
