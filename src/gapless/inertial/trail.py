@@ -11,7 +11,7 @@ import numpy as np
 from gapless.recording import Array
 
 GRAVITY = 9.8
-"""Enough for telling what specific force gained from what gravity did [m/s^2]."""
+"""Enough for telling what gravity did, and what a tilt feigns [m/s^2]."""
 
 
 class _Mark(NamedTuple):

@@ -21,6 +21,7 @@ from gapless.attitude import matrix_rows
 from gapless.events import Motion, Reading
 from gapless.inertial.belief import Belief
 from gapless.inertial.layout import ROW
+from gapless.inertial.trail import GRAVITY
 from gapless.measurements.base import Observation
 from gapless.measurements.zero_velocity import zero_velocity
 from gapless.recording import Array
@@ -29,8 +30,6 @@ from gapless.units import DEG
 SLOTS = 15
 """Ticks in the window."""
 STILL, MOVING = 0, 1
-GRAVITY = 9.8
-"""Enough for what a tilt feigns [m/s^2]."""
 
 
 @inline
