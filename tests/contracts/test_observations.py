@@ -194,3 +194,31 @@ def test_a_stop_is_told_from_driving_by_this_drive_alone():
     assert seen["stop"] > 25, "five a second once all has lasted 1.5 s"
     assert seen["cruise"] == 0
     assert smooth_road == 0, "the filter's own speed forbids it"
+
+
+@pytest.mark.parametrize(("doubt", "believed"), [(0.02, False), (1.0, True)])
+def test_a_stop_is_not_missed_for_a_tilt_in_doubt(doubt, believed):
+    """Standing still with the box a degree off feigns 0.17 m/s^2: a stop to a filter that may be a degree
+    off (its deviation [deg]), braking to one that knows better."""
+    rng = np.random.default_rng(5)
+    b, detector, now = Belief(CORE), Stillness(), 0.0
+    b.P[3:5, 3:5] = 4.0 * np.eye(2)
+    b.P[6:8, 6:8] = np.radians(doubt) ** 2 * np.eye(2)
+
+    def ticks(seconds, shake, speed, lean, labelled):
+        nonlocal now
+        count = 0
+        b.x[3] = speed
+        for _ in range(round(seconds * 10.0)):
+            now += 0.1
+            rate, force = rng.normal(0.0, 0.002 * shake, 3), rng.normal(0.0, 0.02 * shake, 3)
+            force += [9.8 * lean, 0.0, -9.8]
+            if labelled:
+                detector.hear(reading("velocity", now, [speed, 0.0, 0.0]))
+            count += detector.tick(b, Motion(now, 0.1, np.concatenate([rate, force]))) is not None
+        return count
+
+    ticks(30.0, 10.0, 10.0, 0.0, True)
+    ticks(10.0, 1.0, 0.0, 0.0, True)
+    ticks(10.0, 10.0, 10.0, 0.0, False)
+    assert (ticks(10.0, 1.0, 3.0, np.radians(1.0), False) > 25) is believed
