@@ -1,5 +1,6 @@
 """What the README and the pages say is run, or held against the code."""
 
+import importlib.util
 import re
 import sys
 from pathlib import Path
@@ -120,3 +121,13 @@ def test_tutorial_prints_what_it_says(refresh):
     assert [NUMBER.sub("#", word) for word in again.split() if not word.startswith("--")] == [
         NUMBER.sub("#", word) for word in page.split() if not word.startswith("--")
     ]
+
+
+@pytest.mark.parametrize("script", sorted((ROOT / "benchmarks").glob("*.py")), ids=lambda p: p.stem)
+def test_benchmarks_find_what_they_measure(script, monkeypatch):
+    """They are run by hand; a name that has moved shows here."""
+    monkeypatch.syspath_prepend(str(script.parent))
+    found = importlib.util.spec_from_file_location(f"bench_{script.stem}", script)
+    module = importlib.util.module_from_spec(found)
+    found.loader.exec_module(module)
+    assert callable(module.main)
