@@ -15,8 +15,8 @@ from pathlib import Path
 
 from gapless.laboratory.bench import bench
 from gapless.laboratory.recipes import Recipe
-from gapless.laboratory.study import PASSES, ladder, stored
 from gapless.laboratory.render import as_text
+from gapless.laboratory.study import PASSES, ladder, stored
 from gapless.laboratory.tables import tables
 from gapless.reports import summarise
 from gapless.systems.recipe import System

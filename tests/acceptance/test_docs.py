@@ -129,5 +129,6 @@ def test_benchmarks_find_what_they_measure(script, monkeypatch):
     monkeypatch.syspath_prepend(str(script.parent))
     found = importlib.util.spec_from_file_location(f"bench_{script.stem}", script)
     module = importlib.util.module_from_spec(found)
+    monkeypatch.setitem(sys.modules, found.name, module)
     found.loader.exec_module(module)
     assert callable(module.main)
