@@ -7,7 +7,8 @@ class Shell:
     """Runs the command line in this process."""
 
     def __call__(self, *words, code=0):
-        result = CliRunner().invoke(gapless, [str(word) for word in words], prog_name="gapless")
+        wide = {"COLUMNS": "140"}  # whatever terminal the tests are run in
+        result = CliRunner().invoke(gapless, [str(word) for word in words], prog_name="gapless", env=wide)
         if result.exception is not None and not isinstance(result.exception, SystemExit):
             raise result.exception
         assert result.exit_code == code, result.output

@@ -78,6 +78,11 @@ def test_files_of_a_run_are_replaced_together_or_not_at_all(
     assert (tmp_path / "old" / "solution.parquet").read_text() == "old"
 
 
+def hears_interrupts():
+    """Tests that are run in the background are deaf to them, and so would be what they start."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
 def test_ctrl_c_in_a_real_process(drive, tmp_path):
     script = (
         "import sys, time, gapless.systems.fuse as systems\n"
@@ -89,7 +94,9 @@ def test_ctrl_c_in_a_real_process(drive, tmp_path):
     words = [sys.executable, "-c", script, "fuse", str(drive), "--out", str(tmp_path / "out")]
     pipe = subprocess.PIPE
     quiet = os.environ | {"NUMBA_CACHE_DIR": str(tmp_path / "kernels")}  # nothing is said of compiling
-    with subprocess.Popen(words, stdout=pipe, stderr=pipe, text=True, env=quiet) as process:
+    with subprocess.Popen(
+        words, stdout=pipe, stderr=pipe, text=True, env=quiet, preexec_fn=hears_interrupts
+    ) as process:
         assert process.stdout.readline() == "ready\n"
         process.send_signal(signal.SIGINT)
         _, said = process.communicate(timeout=30)

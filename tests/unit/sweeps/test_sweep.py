@@ -33,7 +33,13 @@ def started(path, out):
     """`gapless sweep` in a process group of its own, with something stored and something to do."""
     command = [sys.executable, "-m", "gapless", "sweep", path, "--jobs", "2", "--out", out]
     process = subprocess.Popen(
-        command, env=ENVIRONMENT, start_new_session=True, stderr=subprocess.PIPE, text=True
+        command,
+        env=ENVIRONMENT,
+        start_new_session=True,
+        stderr=subprocess.PIPE,
+        text=True,
+        # tests that are run in the background are deaf to interrupts, and so would be what they start
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
     )
     while not list(out.glob("study=*/part-*.parquet")):
         assert process.poll() is None
