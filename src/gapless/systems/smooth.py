@@ -18,9 +18,9 @@ from gapless.recording import Recording
 from gapless.scenarios import Outage
 from gapless.solution import Decision, Solution
 from gapless.systems.adjust import graded
-from gapless.systems.build import settings, stamps
+from gapless.systems.build import stamps
 from gapless.systems.decide import decide
-from gapless.systems.fuse import Progress, collect, withhold_from
+from gapless.systems.fuse import Progress, collect, settings_for, withhold_from
 from gapless.systems.recipe import System
 from gapless.tape import Row, Tape
 
@@ -71,7 +71,7 @@ def smooth(
     system, outages = graded(System() if system is None else system, recording), tuple(outages)
     open_sky = withhold_from(recording, outages)
     decided = decide(open_sky, system)
-    built = settings(system, open_sky, decided.offsets, decided.mounting, decided.gyro_density, 1.0 / rate)
+    built = settings_for(open_sky, system, decided, rate)
     navigator = Navigator(_on_ticks(built))
     held = in_order(open_sky, stamps(system, decided.offsets))
     cuts = [-np.inf, *np.arange(recording.start + SEGMENT, recording.imu.time[-1], SEGMENT), np.inf]
