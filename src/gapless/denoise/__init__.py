@@ -1,0 +1,1 @@
+"""Denoising of inertial signals: of a whole record, or window by window from the past alone."""

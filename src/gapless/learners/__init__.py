@@ -1,0 +1,1 @@
+"""Learners of the papers, as scikit-learn estimators; one method a file."""
