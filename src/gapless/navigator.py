@@ -51,8 +51,9 @@ class Navigator:
         self.journal = Journal(settings.layout, settings.misalignment)
         belief = Belief(settings.layout, settings.open_loop, settings.trail)
         constraints = {name: c.copy() for name, c in settings.constraints.items()}
+        bridges = [bridge.copy() for bridge in settings.bridges]
         wander = Wander(settings.wander_time)
-        self._state = State(belief, settings.gate.copy(), constraints, settings.aligner.copy(), wander)
+        self._state = State(belief, settings.gate.copy(), constraints, bridges, settings.aligner.copy(), wander)
         self._past = Past(settings.lateness)
         self.dropped = 0
         self.tape: Tape | None = None
@@ -170,6 +171,8 @@ class Navigator:
         observation = self.settings.sensors[reading.channel].observe(state.belief, reading)
         if self._update(reading.channel, reading.time, observation):
             state.heard[reading.channel] = reading.time
+            for bridge in state.bridges:
+                bridge.hear(state.belief, reading)
 
     # --- samples --------------------------------------------------------------------------------
 
@@ -231,6 +234,8 @@ class Navigator:
         state.aligner = self.settings.aligner.copy()
         if state.aligned:
             state.belief.lose_track(begin, begin - state.clock)
+            for bridge in state.bridges:
+                bridge.lost()
             if self.tape is not None:
                 self.tape.forgot(everything=False)
         state.clock = begin
@@ -246,6 +251,10 @@ class Navigator:
                 continue
             if self._update(name, motion.time, observation):
                 state.heard[name] = motion.time
+        for bridge in state.bridges:
+            for channel, said in bridge.tick(state.belief, motion):
+                if self._update(channel, motion.time, said):
+                    state.heard["bridge"] = motion.time
         self._row()
 
     def _row(self) -> None:
@@ -262,6 +271,8 @@ class Navigator:
         heard, now = self._state.heard, self._state.clock
         if now - max(heard.get("position", -math.inf), heard.get("velocity", -math.inf)) < 1.6:
             return "gnss"
+        if now - heard.get("bridge", -math.inf) < 1.6:
+            return "bridge"
         if any(now - heard.get(name, -math.inf) < 1.0 for name in (*self._state.constraints, "odometer")):
             return "constraints"
         return "ins"

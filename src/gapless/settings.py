@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 from gapless.alignment.coarse import Aligner
+from gapless.bridges.base import Bridge
 from gapless.filters.adaptation.gate import Gate
 from gapless.inertial.layout import Layout
 from gapless.measurements.base import Constraint, Sensor
@@ -30,6 +31,8 @@ class Settings:
         By channel.
     constraints : mapping of str to Constraint
         By channel; copied, never changed.
+    bridges : sequence of Bridge
+        Copied, never changed.
     gate : Gate
         Copied.
     aligner : Aligner
@@ -58,6 +61,7 @@ class Settings:
     initial: Mapping[str, Array]
     sensors: Mapping[str, Sensor]
     constraints: Mapping[str, Constraint]
+    bridges: Sequence[Bridge] = ()
     gate: Gate = field(default_factory=Gate)
     aligner: Aligner = field(default_factory=Aligner)
     tick: float = 0.1

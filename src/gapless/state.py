@@ -7,6 +7,7 @@ import math
 from dataclasses import dataclass, field
 
 from gapless.alignment.coarse import Aligner
+from gapless.bridges.base import Bridge
 from gapless.events import Event, ImuBlock, Reading
 from gapless.filters.adaptation.gate import Gate
 from gapless.filters.consider import Wander
@@ -23,6 +24,7 @@ class State:
     belief : Belief
     gate : Gate
     constraints : dict of str to Constraint
+    bridges : list of Bridge
     aligner : Aligner or None
         None once there is a heading that is trusted.
     wander : Wander
@@ -42,6 +44,7 @@ class State:
     belief: Belief
     gate: Gate
     constraints: dict[str, Constraint]
+    bridges: list[Bridge]
     aligner: Aligner | None
     wander: Wander
     pending: list[Reading] = field(default_factory=list)
@@ -61,6 +64,7 @@ class State:
             self.belief.copy(),
             self.gate.copy(),
             {name: c.copy() for name, c in self.constraints.items()},
+            [bridge.copy() for bridge in self.bridges],
             None if self.aligner is None else self.aligner.copy(),
             self.wander.copy(),
             list(self.pending),

@@ -18,13 +18,10 @@ from msgspec.structs import fields
 
 from gapless.errors import ConfigError
 from gapless.inertial.layout import EXTRAS
+from gapless.systems.learning import BridgeUse, LearnerUse, check
+from gapless.systems.values import Angle, Auto, NonNegative, Offset, Positive
 
 T = TypeVar("T", bound=Struct)
-Positive = Annotated[float, Meta(gt=0.0)]
-NonNegative = Annotated[float, Meta(ge=0.0)]
-Angle = Annotated[float, Meta(ge=-180.0, le=360.0)]
-Auto = Literal["auto"]
-Offset = Annotated[float, Meta(ge=-10.0, le=10.0)] | Auto
 
 
 class Imu(Struct, forbid_unknown_fields=True, frozen=True):
@@ -151,6 +148,8 @@ class System(Struct, forbid_unknown_fields=True, frozen=True):
     clock: Clock = Clock()
     mounting: Mounting = Mounting()
     alignment: Alignment = Alignment()
+    bridge: BridgeUse = BridgeUse()
+    learner: LearnerUse = LearnerUse()
 
 
 def parse(text: str, where: str) -> System:
@@ -222,6 +221,7 @@ def checked(tables: Mapping[str, Any], where: str) -> System:
         raise ConfigError(f"{where}: filter.states names a block twice; name each once")
     if unknown:
         raise ConfigError(f"{where}: filter.states has {unknown[0]!r}; choose from {', '.join(EXTRAS)}")
+    check(system.bridge, where)
     return system
 
 
