@@ -53,7 +53,9 @@ class Navigator:
         constraints = {name: c.copy() for name, c in settings.constraints.items()}
         bridges = [bridge.copy() for bridge in settings.bridges]
         wander = Wander(settings.wander_time)
-        self._state = State(belief, settings.gate.copy(), constraints, bridges, settings.aligner.copy(), wander)
+        self._state = State(
+            belief, settings.gate.copy(), constraints, bridges, settings.aligner.copy(), wander
+        )
         self._past = Past(settings.lateness)
         self.dropped = 0
         self.tape: Tape | None = None

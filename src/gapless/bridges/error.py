@@ -36,11 +36,14 @@ class Course(NamedTuple):
     recent : tuple of Epoch
         The last epochs, oldest first; as many as a row shows beside its own.
     past : tuple of ndarray
-        The last errors, oldest first: true ones at first, then predicted ones.
+        The last errors, oldest first: true ones at first, then predicted ones; as many as a row shows.
+    error : ndarray, shape (k,)
+        The last one predicted.
     """
 
     recent: tuple[Epoch, ...]
     past: tuple[Array, ...]
+    error: Array
 
 
 @dataclass(frozen=True)
@@ -83,8 +86,8 @@ class ErrorModel:
         for i, epoch in enumerate(epochs):
             run = run + 1 if i and follows(epoch, epochs[i - 1]) else 0
             if run >= need:
-                course = Course(tuple(epochs[max(0, i - self.lags + 1) : i]), tuple(known[i - self.window : i]))
-                rows.append(self.row(course, epoch))
+                recent, past = epochs[max(0, i - self.lags + 1) : i], known[i - self.window : i]
+                rows.append(self.row(Course(tuple(recent), tuple(past), known[i]), epoch))
                 targets.append(known[i])
         x, y = np.array(rows).reshape(len(rows), -1), np.array(targets).reshape(len(rows), -1)
         good = np.isfinite(x).all(axis=1) & np.isfinite(y).all(axis=1)
@@ -101,7 +104,7 @@ class ErrorModel:
         missing = self.window - len(past)
         none = np.zeros(self._error(epochs[-1]).size)
         recent = tail[-(self.lags - 1) :] if self.lags > 1 else []
-        return Course(tuple(recent), tuple([none] * missing + past))
+        return Course(tuple(recent), tuple([none] * missing + past), none)
 
     def row(self, course: Course, epoch: Epoch) -> Array:
         """See `Model`."""
@@ -112,12 +115,12 @@ class ErrorModel:
     def carry(self, course: Course, epoch: Epoch, y: Array) -> Course:
         """See `Model`: each prediction feeds the next."""
         recent = (*course.recent, epoch)[-(self.lags - 1) :] if self.lags > 1 else ()
-        past = (*course.past, y)[-self.window :] if self.window else (y,)
-        return Course(recent, past)
+        past = (*course.past, y)[-self.window :] if self.window else ()
+        return Course(recent, past, y)
 
     def wrong(self, course: Course, epoch: Epoch) -> dict[str, Array]:
         """See `Model`."""
-        missed = course.past[-1] - self._error(epoch)
+        missed = course.error - self._error(epoch)
         return {name: missed[part] for name, part in self._parts().items()}
 
     def say(self, course: Course, belief: Belief, epoch: Epoch) -> list[Part]:
@@ -128,7 +131,7 @@ class ErrorModel:
             columns = PLACES[name] + np.arange(part.stop - part.start)
             h = np.zeros((len(columns), belief.layout.n))
             h[np.arange(len(columns)), columns] = 1.0
-            said.append(Part(name, seen[columns] - course.past[-1][part], h))
+            said.append(Part(name, seen[columns] - course.error[part], h))
         return said
 
     def _error(self, epoch: Epoch) -> Array:
@@ -140,6 +143,4 @@ class ErrorModel:
 
     def _parts(self) -> dict[str, slice]:
         ends = np.cumsum([self._size(name) for name in self.learns]).tolist()
-        return {
-            name: slice(end - self._size(name), end) for name, end in zip(self.learns, ends, strict=True)
-        }
+        return {name: slice(end - self._size(name), end) for name, end in zip(self.learns, ends, strict=True)}

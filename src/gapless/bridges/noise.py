@@ -109,7 +109,11 @@ class CalibratedNoise:
         names = {name for m in missed for name in m.wrong}
         found = {}
         for name in names:
-            rows = [(m.age, float(np.mean(m.wrong[name] ** 2))) for m in missed if np.isfinite(m.wrong[name]).all()]
+            rows = [
+                (m.age, float(np.mean(m.wrong[name] ** 2)))
+                for m in missed
+                if np.isfinite(m.wrong[name]).all()
+            ]
             if len(rows) >= 5:
                 found[name] = _growth(np.array(rows))
         return CalibratedNoise(found or None, self.held_out)

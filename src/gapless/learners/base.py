@@ -39,9 +39,7 @@ class Learner(MultiOutputMixin, RegressorMixin, BaseEstimator):
             If the data or a parameter is not as it should be.
         """
         self._validate_params()
-        X, y = validate_data(
-            self, X, y, reset=reset, dtype=np.float64, multi_output=True, y_numeric=True
-        )
+        X, y = validate_data(self, X, y, reset=reset, dtype=np.float64, multi_output=True, y_numeric=True)
         weight = _check_sample_weight(sample_weight, X, dtype=np.float64)
         if np.any(weight < 0.0) or not np.any(weight > 0.0):
             raise ValueError("sample_weight must not be negative, nor zero throughout; mend the weights")
