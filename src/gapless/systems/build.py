@@ -8,6 +8,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from gapless.alignment.coarse import Aligner
+from gapless.filters.adaptation.registry import KINDS, RULES, chain
 from gapless.inertial.layout import Layout
 from gapless.measurements.base import Constraint, Sensor
 from gapless.measurements.gnss import Position, Velocity
@@ -55,6 +56,8 @@ def settings(
     imu = budget(system.imu, gyro_density)
     names = states(system, recording)
     angles, angle_sd = mounting
+    rules = system.adaptation
+    tables = {name: getattr(rules, name) for name in RULES}
     return Settings(
         layout=Layout(names),
         noise=imu["noise"],
@@ -73,6 +76,7 @@ def settings(
         initial=_initial(names, angles, system, recording),
         sensors=_sensors(system, recording, angles),
         constraints=_constraints(system, angles),
+        adaptation={kind: chain(kind, getattr(rules, kind), tables) for kind in KINDS},
         aligner=Aligner(float(angles[1]), system.alignment.min_speed, system.alignment.window),
         tick=system.filter.tick,
         period=system.filter.covariance_period,

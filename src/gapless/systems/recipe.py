@@ -10,13 +10,14 @@ import tomllib
 from collections.abc import Mapping
 from importlib.resources import files
 from pathlib import Path
-from typing import Annotated, Any, Literal, TypeVar, get_args
+from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeVar, get_args
 
 import msgspec
 from msgspec import Meta, Struct
 from msgspec.structs import fields
 
 from gapless.errors import ConfigError
+from gapless.filters.adaptation.registry import KINDS, RULES, check
 from gapless.inertial.layout import EXTRAS
 
 T = TypeVar("T", bound=Struct)
@@ -78,6 +79,20 @@ class GnssUse(Struct, forbid_unknown_fields=True, frozen=True):
     velocity_averaging: NonNegative = 0.0
     jitter: NonNegative = 0.02
     lever_arm: tuple[float, float, float] | None = None
+
+
+if TYPE_CHECKING:
+    _Rules = Struct
+else:  # a table for each rule, so that a rule needs no line here
+    _Rules = msgspec.defstruct("_Rules", [(name, rule.Table, rule.Table()) for name, rule in RULES.items()])
+
+
+class Adaptation(_Rules, forbid_unknown_fields=True, frozen=True):
+    """Rules that bend R or P, in order, by kind of observation; then a table for each rule."""
+
+    gnss: tuple[str, ...] = ("gate",)
+    bridge: tuple[str, ...] = ("gate",)
+    constraints: tuple[str, ...] = ("gate",)
 
 
 class Nonholonomic(Struct, forbid_unknown_fields=True, frozen=True):
@@ -144,6 +159,7 @@ class System(Struct, forbid_unknown_fields=True, frozen=True):
     constraints: tuple[Literal["zero_velocity", "nonholonomic"], ...] = ("zero_velocity", "nonholonomic")
     imu: Imu = Imu()
     filter: Filter = Filter()
+    adaptation: Adaptation = Adaptation()
     gnss: GnssUse = GnssUse()
     nonholonomic: Nonholonomic = Nonholonomic()
     zero_velocity: ZeroVelocity = ZeroVelocity()
@@ -222,6 +238,11 @@ def checked(tables: Mapping[str, Any], where: str) -> System:
         raise ConfigError(f"{where}: filter.states names a block twice; name each once")
     if unknown:
         raise ConfigError(f"{where}: filter.states has {unknown[0]!r}; choose from {', '.join(EXTRAS)}")
+    for kind in KINDS:
+        try:
+            check(kind, getattr(system.adaptation, kind))
+        except ConfigError as error:
+            raise ConfigError(f"{where}: {error}") from None
     return system
 
 
