@@ -9,12 +9,11 @@ import numpy as np
 
 from gapless import earth
 from gapless.alignment.coarse import Start
+from gapless.assimilate import assimilate
 from gapless.events import EPS, Event, ImuBlock, Motion, Reading
 from gapless.filters.consider import Wander
-from gapless.filters.update import assess, correct
 from gapless.inertial import propagate as at
 from gapless.inertial.belief import Belief, inject
-from gapless.inertial.layout import ROW
 from gapless.inertial.pieces import GAP, pieces, without_holes
 from gapless.journal import Journal
 from gapless.measurements.base import Observation
@@ -53,9 +52,9 @@ class Navigator:
         constraints = {name: c.copy() for name, c in settings.constraints.items()}
         bridges = [bridge.copy() for bridge in settings.bridges]
         wander = Wander(settings.wander_time)
-        self._state = State(
-            belief, settings.gate.copy(), constraints, bridges, settings.aligner.copy(), wander
-        )
+        rules = {kind: rule.copy() for kind, rule in settings.adaptation.items()}
+        aligner = settings.aligner.copy()
+        self._state = State(belief, rules, constraints, bridges, aligner, wander, settings.noise)
         self._past = Past(settings.lateness)
         self.dropped = 0
         self.tape: Tape | None = None
@@ -201,11 +200,14 @@ class Navigator:
             state.clock = float(block.time[last - 1])
             return
         b, often = state.belief, s.row < s.tick
+        if state.fade > 1.0:  # the epoch is over
+            b.fade(state.fade, s.ceiling)
+            state.fade = 1.0
         while first < last:
             end = self._next_row(block, first, last) if often else last
             flush = due and end == last
             first = at.propagate(
-                b.x, b.memory, s.layout.width, b.p, b.scratch, b.error, s.layout.offsets, s.noise,
+                b.x, b.memory, s.layout.width, b.p, b.scratch, b.error, s.layout.offsets, state.noise,
                 block.time, block.dt, block.dtheta, block.dvel, first, end, s.period, s.tick, flush,
             )  # fmt: skip
             state.clock = float(block.time[first - 1])
@@ -310,31 +312,4 @@ class Navigator:
         self.journal.align(state.clock, start.evidence)
 
     def _update(self, channel: str, time: float, o: Observation) -> bool:
-        """Gate, adapt, correct; False where the observation was rejected."""
-        state, n = self._state, self.settings.layout.n
-        b = state.belief
-        z = o.z
-        nis, s, hp = assess(b.p, ROW, n, z, o.H, o.R)
-        verdict = state.gate.judge(channel, time, z, nis, o.R)
-        self.journal.innovation(channel, time, z, s, nis, verdict.factor)
-        if verdict.widen:
-            b.widen(o.H, z)
-        if math.isinf(verdict.factor):
-            return False
-        r = o.R
-        if verdict.widen:
-            _, s, hp = assess(b.p, ROW, n, z, o.H, r)
-        elif verdict.factor != 1.0:
-            r = o.R * verdict.factor
-            s = s + (r - o.R)
-        if self.tape is not None:
-            self.tape.corrected(o.H, hp, s, z)
-        dx = correct(b.p, ROW, n, z, o.H, r, s, hp, 1.0)
-        if o.slow is not None:
-            state.wander.hear(time, b.p, ROW, r, o.slow)
-        if b.error.size:
-            b.error[:n] += dx
-        else:
-            inject(b.x, dx)
-            b.trail.shift(dx[3:6])
-        return True
+        return assimilate(self._state, self.settings, channel, time, o, self.journal, self.tape)

@@ -156,7 +156,7 @@ def _sources(
 
 def _methods(systems: str) -> Sequence[Method]:
     from gapless.laboratory.recipes import Recipe, smoothed
-    from gapless.systems.recipe import load
+    from gapless.systems.library import load
 
     names = [name.strip() for name in systems.split(",")]
     return tuple(

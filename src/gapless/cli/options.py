@@ -155,7 +155,7 @@ def _system(name: str | None, config: Path | None, without: Sequence[str], clock
     from gapless.errors import ConfigError
     from gapless.systems.adjust import with_clock
     from gapless.systems.adjust import without as left_out
-    from gapless.systems.recipe import load
+    from gapless.systems.library import load
 
     if name is not None and config is not None:
         raise ConfigError("--system and --config both name a recipe; give one of them")

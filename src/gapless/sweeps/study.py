@@ -21,7 +21,8 @@ from gapless.simulate import profile as named_profile
 from gapless.sweeps.run import Run
 from gapless.sweeps.sources import Logged, Simulated, logged
 from gapless.systems.adjust import changed
-from gapless.systems.recipe import Positive, System, load, loads, typed
+from gapless.systems.library import load, loads, typed
+from gapless.systems.recipe import Positive, System
 
 Name = Annotated[str, Meta(pattern=r"^[A-Za-z0-9][A-Za-z0-9._-]*$")]
 Seed = Annotated[int, Meta(ge=0)]

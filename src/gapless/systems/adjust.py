@@ -11,7 +11,8 @@ from msgspec.structs import replace
 from gapless.errors import ConfigError
 from gapless.recording import Recording
 from gapless.sensors import grade_names
-from gapless.systems.recipe import Clock, System, checked
+from gapless.systems.library import checked
+from gapless.systems.recipe import Clock, System
 from gapless.systems.values import Offset
 
 

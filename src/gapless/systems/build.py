@@ -8,6 +8,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from gapless.alignment.coarse import Aligner
+from gapless.filters.adaptation.registry import KINDS, RULES, chain
 from gapless.inertial.layout import Layout
 from gapless.measurements.base import Constraint, Sensor
 from gapless.measurements.gnss import Position, Velocity
@@ -57,6 +58,8 @@ def settings(
     names = states(system, recording)
     angles, angle_sd = mounting
     sensors, lateness = _sensors(system, recording, angles), _lateness(stamps(system, offsets))
+    rules = system.adaptation
+    tables = {name: getattr(rules, name) for name in RULES}
     return Settings(
         layout=Layout(names),
         noise=imu["noise"],
@@ -76,6 +79,7 @@ def settings(
         sensors=sensors,
         constraints=_constraints(system, angles),
         bridges=bridges(system.bridge, system.learner, sensors, lateness),
+        adaptation={kind: chain(kind, getattr(rules, kind), tables) for kind in KINDS},
         aligner=Aligner(float(angles[1]), system.alignment.min_speed, system.alignment.window),
         tick=system.filter.tick,
         period=system.filter.covariance_period,
