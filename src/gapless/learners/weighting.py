@@ -11,8 +11,12 @@ from gapless.learners.base import OutputByOutput, weighable
 from gapless.learners.random_layer import relm
 from gapless.recording import Array
 
-_FULL, _NONE, _LEAST: Final = 2.5, 3.0, 1e-4
-"""c1, c2 [robust standard deviations] and the weight beyond c2 (Deng et al. 2009, after Suykens et al. 2002)."""
+_FULL: Final = 2.5
+"""c1: trusted up to here [robust standard deviations] (Deng et al. 2009, after Suykens et al. 2002)."""
+_NONE: Final = 3.0
+"""c2: not trusted from here on."""
+_LEAST: Final = 1e-4
+"""The weight beyond c2."""
 
 
 class ResidualWeighted(OutputByOutput):
