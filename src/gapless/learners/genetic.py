@@ -112,19 +112,7 @@ class GeneticSearchCV(OutputByOutput):
         self.n_jobs = n_jobs
         self.random_state = random_state
 
-    def fit(self, X: Any, y: Any) -> Self:
-        """Search, for each output.
-
-        Parameters
-        ----------
-        X : array-like, shape (n, m)
-        y : array-like, shape (n,) or (n, k)
-
-        Returns
-        -------
-        GeneticSearchCV
-        """
-        X, targets, _ = self._checked(X, y)
+    def _fit(self, X: Array, targets: Array, weight: Array) -> Self:
         rng = check_random_state(self.random_state)
         base = MeanLossSVR() if self.estimator is None else self.estimator
         models, found = [], []
@@ -138,7 +126,8 @@ class GeneticSearchCV(OutputByOutput):
         self.best_rms_ = np.array([rms for _, rms, *_ in found])
         self.evaluations_ = np.array([count for *_, count, _ in found])
         self.history_ = [history for *_, history in found]
-        return self._keep(models)
+        self.estimators_ = models
+        return self
 
     def _search(self, fitness: Fitness, rng: Any) -> tuple[dict[str, float], float, int, Array]:
         """Best parameters, their RMS, how many were tried, and best and mean RMS by generation."""

@@ -54,4 +54,5 @@ class PerOutput(OutputByOutput):
         PerOutput
         """
         X, targets, _ = self._checked(X, y)
-        return self._keep([clone(self._chosen()).fit(X, column, **fit_params) for column in targets.T])
+        self.estimators_ = [clone(self._chosen()).fit(X, column, **fit_params) for column in targets.T]
+        return self

@@ -9,6 +9,7 @@ from sklearn.svm import SVR
 from sklearn.utils._param_validation import Interval
 
 from gapless.learners.base import OutputByOutput
+from gapless.recording import Array
 
 
 class MeanLossSVR(OutputByOutput):
@@ -44,18 +45,7 @@ class MeanLossSVR(OutputByOutput):
         self.gamma = gamma
         self.epsilon = epsilon
 
-    def fit(self, X: Any, y: Any) -> Self:
-        """Fit every output.
-
-        Parameters
-        ----------
-        X : array-like, shape (n, m)
-        y : array-like, shape (n,) or (n, k)
-
-        Returns
-        -------
-        MeanLossSVR
-        """
-        X, targets, _ = self._checked(X, y)
+    def _fit(self, X: Array, targets: Array, weight: Array) -> Self:
         own = {"C": self.C / len(X), "gamma": self.gamma, "epsilon": self.epsilon}
-        return self._keep([SVR(**own).fit(X, column) for column in targets.T])
+        self.estimators_ = [SVR(**own).fit(X, column) for column in targets.T]
+        return self
