@@ -10,7 +10,7 @@ from sklearn.base import clone
 from sklearn.utils import check_random_state
 from sklearn.utils._param_validation import Integral, Interval
 
-from gapless.learners.base import OutputByOutput, weighable
+from gapless.learners.base import OutputByOutput, TakesWeights, weighable
 from gapless.learners.random_layer import relm
 from gapless.recording import Array
 
@@ -45,7 +45,7 @@ class Weighted(NamedTuple):
         return answer
 
 
-class AdaBoostRT(OutputByOutput):
+class AdaBoostRT(TakesWeights, OutputByOutput):
     """Modified AdaBoost.RT (Solomatine and Shrestha 2004; Tian and Mao 2010; georges2015, algorithm 2).
 
     For t = 1...rounds: fit with the sample distribution D_t; relative error e_i = |f_t(x_i) - y_i| / s,
@@ -107,30 +107,13 @@ class AdaBoostRT(OutputByOutput):
         self.power = power
         self.random_state = random_state
 
-    def fit(self, X: Any, y: Any, sample_weight: Any = None) -> Self:
-        """Boost, for each output.
-
-        Parameters
-        ----------
-        X : array-like, shape (n, m)
-        y : array-like, shape (n,) or (n, k)
-        sample_weight : array-like, shape (n,), optional
-
-        Returns
-        -------
-        AdaBoostRT
-
-        Raises
-        ------
-        ValueError
-            If the estimator takes no sample weights.
-        """
-        X, targets, weight = self._checked(X, y, sample_weight)
+    def _fit(self, X: Array, targets: Array, weight: Array) -> Self:
         base = weighable(relm() if self.estimator is None else self.estimator)
         rng = check_random_state(self.random_state)
         boosted = [self._boost(base, X, column, weight, rng) for column in targets.T]
         self.thresholds_ = np.array([thresholds for _, thresholds in boosted])
-        return self._keep([model for model, _ in boosted])
+        self.estimators_ = [model for model, _ in boosted]
+        return self
 
     def _boost(self, base: Any, X: Array, y: Array, weight: Array, rng: Any) -> tuple[Weighted, list[float]]:
         total = weight.sum()

@@ -19,8 +19,8 @@ from gapless.recording import Array
 class Learner(MultiOutputMixin, RegressorMixin, BaseEstimator):
     """A regressor whose targets have shape (n,) or (n, k), and whose predictions have the same.
 
-    A child says `fit`, which begins with `_checked`, and `_predict`, for checked inputs and always
-    with a row of outputs a sample.
+    A child says `_fit` and `_predict`, for checked arrays, and with a row of outputs a sample even
+    where there is but one output.
 
     Attributes
     ----------
@@ -28,16 +28,29 @@ class Learner(MultiOutputMixin, RegressorMixin, BaseEstimator):
     n_outputs_ : int
     """
 
-    def _checked(
-        self, X: Any, y: Any, sample_weight: Any = None, *, reset: bool = True
-    ) -> tuple[Array, Array, Array]:
-        """Inputs (n, m), targets (n, k) and positive weights (n,); samples of weight zero are gone.
+    def fit(self, X: Any, y: Any) -> Self:
+        """Learn from samples.
+
+        Parameters
+        ----------
+        X : array-like, shape (n, m)
+        y : array-like, shape (n,) or (n, k)
+
+        Returns
+        -------
+        Learner
 
         Raises
         ------
         ValueError
             If the data or a parameter is not as it should be.
         """
+        return self._fit(*self._checked(X, y))
+
+    def _checked(
+        self, X: Any, y: Any, sample_weight: Any = None, *, reset: bool = True
+    ) -> tuple[Array, Array, Array]:
+        """Inputs (n, m), targets (n, k) and positive weights (n,); samples of weight zero are gone."""
         self._validate_params()
         X, y = validate_data(self, X, y, reset=reset, dtype=np.float64, multi_output=True, y_numeric=True)
         weight = _check_sample_weight(sample_weight, X, dtype=np.float64)
@@ -68,23 +81,44 @@ class Learner(MultiOutputMixin, RegressorMixin, BaseEstimator):
         outputs = self._predict(X)
         return outputs.ravel() if self._flat else outputs
 
+    def _fit(self, X: Array, targets: Array, weight: Array) -> Self:
+        raise NotImplementedError
+
     def _predict(self, X: Array) -> Array:
         raise NotImplementedError
 
 
-class OutputByOutput(Learner):
-    """A learner that makes a model of its own for every output.
+class TakesWeights(Learner):
+    """A learner some of whose samples may count more than others."""
 
-    A child says `fit`, which ends with `_keep`.
+    def fit(self, X: Any, y: Any, sample_weight: Any = None) -> Self:
+        """Learn from samples.
+
+        Parameters
+        ----------
+        X : array-like, shape (n, m)
+        y : array-like, shape (n,) or (n, k)
+        sample_weight : array-like, shape (n,), optional
+
+        Returns
+        -------
+        Learner
+
+        Raises
+        ------
+        ValueError
+            If the data or a parameter is not as it should be.
+        """
+        return self._fit(*self._checked(X, y, sample_weight))
+
+
+class OutputByOutput(Learner):
+    """A learner that makes a model of its own for every output: its `_fit` makes `estimators_`.
 
     Attributes
     ----------
     estimators_ : list of fitted models, one an output
     """
-
-    def _keep(self, models: list[Any]) -> Self:
-        self.estimators_ = models
-        return self
 
     def _predict(self, X: Array) -> Array:
         return np.column_stack([model.predict(X) for model in self.estimators_])

@@ -14,7 +14,7 @@ import numpy as np
 from sklearn.utils import check_random_state
 from sklearn.utils._param_validation import Integral, Interval, StrOptions
 
-from gapless.learners.base import Learner
+from gapless.learners.base import TakesWeights
 from gapless.learners.least_squares import Triangle, absorb, nothing, solve
 from gapless.recording import Array
 
@@ -81,7 +81,7 @@ NODES: Final[dict[str, Callable[[Array, float], Array]]] = {
 }
 
 
-class RandomLayer(Learner):
+class RandomLayer(TakesWeights):
     """Hidden weights drawn once, output weights by least squares.
 
     With pre-activations x = X W + b, W uniform in [-width, width] and b in [0, width] (the bounds
@@ -143,24 +143,6 @@ class RandomLayer(Learner):
         tags.regressor_tags.poor_score = self.nodes == "fourier"
         return tags
 
-    def fit(self, X: Any, y: Any, sample_weight: Any = None) -> Self:
-        """Draw the hidden layer and solve for the outputs.
-
-        Parameters
-        ----------
-        X : array-like, shape (n, m)
-        y : array-like, shape (n,) or (n, k)
-        sample_weight : array-like, shape (n,), optional
-
-        Returns
-        -------
-        RandomLayer
-        """
-        checked = self._checked(X, y, sample_weight)
-        self._draw(checked[0])
-        self._known = nothing(self._design(checked[0]).shape[1], self.n_outputs_)
-        return self._learn(*checked)
-
     def partial_fit(self, X: Any, y: Any, sample_weight: Any = None) -> Self:
         """Take in more samples: the outputs become those of all samples so far (OS-ELM).
 
@@ -179,6 +161,11 @@ class RandomLayer(Learner):
         if not hasattr(self, "output_"):
             return self.fit(X, y, sample_weight)
         return self._learn(*self._checked(X, y, sample_weight, reset=False))
+
+    def _fit(self, X: Array, targets: Array, weight: Array) -> Self:
+        self._draw(X)
+        self._known = nothing(self._design(X).shape[1], targets.shape[1])
+        return self._learn(X, targets, weight)
 
     def _draw(self, X: Array) -> None:
         rng = check_random_state(self.random_state)

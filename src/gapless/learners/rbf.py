@@ -66,19 +66,7 @@ class RBFNetwork(Learner):
         tags.regressor_tags.poor_score = True  # twenty bells do not fill ten dimensions
         return tags
 
-    def fit(self, X: Any, y: Any) -> Self:
-        """Place the bells and solve for the outputs.
-
-        Parameters
-        ----------
-        X : array-like, shape (n, m)
-        y : array-like, shape (n,) or (n, k)
-
-        Returns
-        -------
-        RBFNetwork
-        """
-        X, targets, weight = self._checked(X, y)
+    def _fit(self, X: Array, targets: Array, weight: Array) -> Self:
         nodes = min(self.n_nodes, len(np.unique(X, axis=0)))
         means = KMeans(nodes, n_init=1, random_state=self.random_state)
         with warnings.catch_warnings():  # rows that differ by less than rounding are one cluster

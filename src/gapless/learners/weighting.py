@@ -7,15 +7,19 @@ from typing import Any, ClassVar, Final, Self
 import numpy as np
 from sklearn.base import clone
 
-from gapless.learners.base import OutputByOutput, weighable
+from gapless.learners.base import OutputByOutput, TakesWeights, weighable
 from gapless.learners.random_layer import relm
 from gapless.recording import Array
 
-_FULL, _NONE, _LEAST: Final = 2.5, 3.0, 1e-4
-"""c1, c2 [robust standard deviations] and the weight beyond c2 (Deng et al. 2009, after Suykens et al. 2002)."""
+_FULL: Final = 2.5
+"""c1: trusted up to here [robust standard deviations] (Deng et al. 2009, after Suykens et al. 2002)."""
+_NONE: Final = 3.0
+"""c2: not trusted from here on."""
+_LEAST: Final = 1e-4
+"""The weight beyond c2."""
 
 
-class ResidualWeighted(OutputByOutput):
+class ResidualWeighted(TakesWeights, OutputByOutput):
     """Fit, weigh the samples by their residuals, fit again.
 
     With s = IQR / (2 x 0.6745) of the residuals e, D_ii = 1 where |e_i/s| <= 2.5, (3 - |e_i/s|) / 0.5
@@ -38,32 +42,15 @@ class ResidualWeighted(OutputByOutput):
     def __init__(self, estimator: Any = None) -> None:
         self.estimator = estimator
 
-    def fit(self, X: Any, y: Any, sample_weight: Any = None) -> Self:
-        """Fit twice, for each output.
-
-        Parameters
-        ----------
-        X : array-like, shape (n, m)
-        y : array-like, shape (n,) or (n, k)
-        sample_weight : array-like, shape (n,), optional
-
-        Returns
-        -------
-        ResidualWeighted
-
-        Raises
-        ------
-        ValueError
-            If the estimator takes no sample weights.
-        """
-        X, targets, weight = self._checked(X, y, sample_weight)
+    def _fit(self, X: Array, targets: Array, weight: Array) -> Self:
         base = weighable(relm() if self.estimator is None else self.estimator)
         models = []
         for column in targets.T:
             first = clone(base).fit(X, column, sample_weight=weight)
             trust = residual_weights(column - first.predict(X), weight)
             models.append(clone(base).fit(X, column, sample_weight=weight * trust**2))
-        return self._keep(models)
+        self.estimators_ = models
+        return self
 
 
 def residual_weights(residual: Array, weight: Array) -> Array:
