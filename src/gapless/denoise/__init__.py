@@ -11,6 +11,7 @@ from gapless.denoise.base import Denoiser, snr, two_sided_low_pass
 from gapless.denoise.emd import Emd
 from gapless.denoise.interval import EmdCiit, EmdIit, EmdIt
 from gapless.denoise.wavelet import Wavelet
+from gapless.denoise.windowed import Windowed
 
 DENOISERS: Final[dict[str, type[Denoiser]]] = {
     "wavelet": Wavelet,
@@ -29,6 +30,7 @@ __all__ = [
     "EmdIit",
     "EmdIt",
     "Wavelet",
+    "Windowed",
     "snr",
     "two_sided_low_pass",
 ]

@@ -26,23 +26,28 @@ class Denoiser(Protocol):
         ...
 
     @property
+    def name(self) -> str:
+        """Of the method: "emd"."""
+        ...
+
+    @property
     def text(self) -> str:
         """What ran, as a result states it: "emd, whole record: not a real-time result"."""
         ...
 
 
-def whole_record(name: str) -> str:
+def whole_record(denoiser: Denoiser) -> str:
     """The text of a denoiser that sees the future.
 
     Parameters
     ----------
-    name : str
+    denoiser : Denoiser
 
     Returns
     -------
     str
     """
-    return f"{name}, whole record: not a real-time result"
+    return f"{denoiser.name}, whole record: not a real-time result"
 
 
 def at_least(least: float, **values: float) -> None:
@@ -83,9 +88,7 @@ def sound(x: Array) -> Array:
     """
     record = np.array(x, dtype=np.float64)
     if record.ndim != 1:
-        raise RecordingError(
-            f"a denoiser takes one channel, not shape {record.shape}; give it column by column"
-        )
+        raise RecordingError(f"denoising takes one channel, not shape {record.shape}; give columns")
     bad = np.flatnonzero(~np.isfinite(record))
     if bad.size:
         raise RecordingError(f"denoising: sample {bad[0]} is {record[bad[0]]}; fill or cut the record there")

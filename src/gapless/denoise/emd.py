@@ -65,6 +65,11 @@ class Emd:
         return kept
 
     @property
+    def name(self) -> str:
+        """As in the registry."""
+        return "emd"
+
+    @property
     def text(self) -> str:
         """What ran, as a result states it."""
-        return whole_record("emd")
+        return whole_record(self)

@@ -74,9 +74,14 @@ class EmdIt:
         return _thresholded(record, None, self.factor, self.siftings)
 
     @property
+    def name(self) -> str:
+        """As in the registry."""
+        return "emd-it"
+
+    @property
     def text(self) -> str:
         """What ran, as a result states it."""
-        return whole_record("emd-it")
+        return whole_record(self)
 
 
 @dataclass(frozen=True)
@@ -169,9 +174,14 @@ class EmdIit:
         return np.asarray(rng.permutation(noise))
 
     @property
+    def name(self) -> str:
+        """As in the registry."""
+        return "emd-iit"
+
+    @property
     def text(self) -> str:
         """What ran, as a result states it."""
-        return whole_record("emd-iit")
+        return whole_record(self)
 
 
 @dataclass(frozen=True)
@@ -196,9 +206,9 @@ class EmdCiit(EmdIit):
         return first - Wavelet("bayes")(first, rate)
 
     @property
-    def text(self) -> str:
-        """What ran, as a result states it."""
-        return whole_record("emd-ciit")
+    def name(self) -> str:
+        """As in the registry."""
+        return "emd-ciit"
 
 
 def _thresholded(x: Array, level: float | None, factor: float, siftings: int) -> Array:

@@ -105,13 +105,16 @@ class Wavelet:
             limit = sigma * np.sqrt(2.0 * np.log(n))
             return np.asarray(pywt.threshold(detail, limit, self.thresholding))
         power = float(np.mean(np.square(detail))) - sigma**2
-        return (
-            np.asarray(pywt.threshold(detail, sigma**2 / np.sqrt(power), "soft"))
-            if power > 0.0
-            else 0.0 * detail
-        )
+        if power <= 0.0:
+            return np.zeros_like(detail)
+        return np.asarray(pywt.threshold(detail, sigma**2 / np.sqrt(power), "soft"))
+
+    @property
+    def name(self) -> str:
+        """As in the registry, with the thresholding."""
+        return f"wavelet ({self.thresholding})"
 
     @property
     def text(self) -> str:
         """What ran, as a result states it."""
-        return whole_record(f"wavelet ({self.thresholding})")
+        return whole_record(self)
