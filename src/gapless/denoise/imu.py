@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
+from itertools import pairwise
 from typing import Final
 
 import numpy as np
@@ -31,7 +32,7 @@ def stretches(time: Array) -> list[slice]:
     """
     cuts = np.flatnonzero(np.diff(time) > HOLE) + 1
     edges = [0, *(int(c) for c in cuts), len(time)]
-    return [slice(a, b) for a, b in zip(edges, edges[1:], strict=False) if b > a]
+    return [slice(a, b) for a, b in pairwise(edges) if b > a]
 
 
 def denoised(imu: Imu, denoiser: Denoiser) -> Imu:

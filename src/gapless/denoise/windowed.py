@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Any, Final
 
@@ -17,8 +18,8 @@ SPANS: Final = np.array([2.0, 4.0, 8.0, 16.0, 32.0, 64.0])
 """Memories of the moving averages that a value is made of [samples]."""
 REGIMES: Final = np.array([1.0, 2.0, 4.0])
 """Distances of a fast from a slow average, in sigmas of noise, that part the regimes of motion."""
-FORGETTING: Final = 0.98
-"""Weight of what was learned, a step later: it lasts for fifty steps."""
+MEMORY: Final = 10.0
+"""What was learned fades by 1 / e over this many lengths of a window."""
 MOST: Final = 3.0
 """A sample is moved by no more than this many sigmas: white noise goes no further."""
 EDGE: Final = 16
@@ -88,6 +89,7 @@ class Windowed:
         out, lags = record.copy(), np.empty((len(record), len(SPANS)))
         average(record, SPANS, lags)
         a, b, edge = *_nothing(), self.length // EDGE
+        kept = math.exp(-self.step / (MEMORY * self.length))
         for end in range(self.length, len(record) + 1, self.step):
             begin = end - self.length
             change = self.inner(record[begin:end], rate) - record[begin:end]
@@ -97,7 +99,7 @@ class Windowed:
             fresh = self.length - 2 * edge if begin == 0 else self.step
             if noise > 0.0:
                 last = self.length - edge
-                learn(lags[begin:end], change, last - fresh, last, noise, a, b)
+                learn(lags[begin:end], change, last - fresh, last, noise, kept, a, b)
                 imitate(record, lags, _weights(a, b), noise, end - 1, until, out)
         return out
 
@@ -154,7 +156,9 @@ def _regime(lag: Any, noise: float) -> int:
 
 
 @long_kernel
-def learn(lags: Array, change: Array, begin: int, end: int, noise: float, a: Array, b: Array) -> None:
+def learn(
+    lags: Array, change: Array, begin: int, end: int, noise: float, kept: float, a: Array, b: Array
+) -> None:
     """Add samples to the normal equations of their regimes, in units of the noise.
 
     Parameters
@@ -166,16 +170,18 @@ def learn(lags: Array, change: Array, begin: int, end: int, noise: float, a: Arr
         Samples that count.
     noise : float
         Standard deviation.
+    kept : float
+        Share of what `a` and `b` held that is not forgotten.
     a : ndarray, shape (r, k, k)
-        Replaced in place, what it held being forgotten in part.
+        Replaced in place.
     b : ndarray, shape (r, k)
     """
     k = lags.shape[1]
     for r in range(a.shape[0]):
         for p in range(k):
-            b[r, p] *= FORGETTING
+            b[r, p] *= kept
             for q in range(k):
-                a[r, p, q] *= FORGETTING
+                a[r, p, q] *= kept
     weight = 1.0 / noise**2
     for i in range(begin, end):
         r = _regime(lags[i], noise)
