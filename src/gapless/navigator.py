@@ -10,6 +10,7 @@ import numpy as np
 from gapless import earth
 from gapless.alignment.coarse import Start
 from gapless.assimilate import assimilate
+from gapless.bridges.base import Bridge
 from gapless.events import EPS, Event, ImuBlock, Motion, Reading
 from gapless.filters.consider import Wander
 from gapless.inertial import propagate as at
@@ -63,6 +64,11 @@ class Navigator:
     def belief(self) -> Belief:
         """The present belief (not a copy)."""
         return self._state.belief
+
+    @property
+    def bridges(self) -> list[Bridge]:
+        """The bridges as they are now (not copies)."""
+        return self._state.bridges
 
     @property
     def time(self) -> float:

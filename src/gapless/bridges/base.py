@@ -7,6 +7,7 @@ from typing import NamedTuple, Protocol, Self
 from gapless.events import Motion, Reading
 from gapless.inertial.belief import Belief
 from gapless.measurements.base import Observation
+from gapless.solution import Decision
 
 
 class Saying(NamedTuple):
@@ -57,6 +58,20 @@ class Bridge(Protocol):
 
     def lost(self) -> None:
         """The IMU was silent: what went before does not lead up to what follows."""
+        ...
+
+    def decisions(self, start: float) -> tuple[Decision, ...]:
+        """What it learned and when, for the summary.
+
+        Parameters
+        ----------
+        start : float
+            Time of the first IMU sample [s].
+
+        Returns
+        -------
+        tuple of Decision
+        """
         ...
 
     def copy(self) -> Self:

@@ -19,7 +19,7 @@ from gapless.bridges.epochs import Epoch, features
 from gapless.bridges.model import Part
 from gapless.events import Reading
 from gapless.inertial.belief import Belief
-from gapless.measurements.gnss import Position
+from gapless.measurements.base import Sensor
 from gapless.recording import Array
 
 
@@ -48,13 +48,13 @@ class IncrementModel:
         From `FEATURES`.
     axes : int
         2 for north and east, 3 for down too.
-    sensor : Position
+    sensor : Sensor
         For antenna and lever arm.
     """
 
     features: tuple[str, ...]
     axes: int
-    sensor: Position
+    sensor: Sensor
     memoryless: bool = True
 
     def pairs(self, epochs: Sequence[Epoch]) -> tuple[Array, Array]:

@@ -20,6 +20,7 @@ from gapless.inertial.belief import Belief
 from gapless.inertial.coast import STATE
 from gapless.measurements.base import Observation, Sensor
 from gapless.recording import Array
+from gapless.solution import Decision
 
 
 class Regressor(Protocol):
@@ -180,6 +181,13 @@ class LearnedBridge:
         """See `Bridge`."""
         self.before = self.fix_time = self.shadow.began = math.nan
         self.course, self.velocity_error = None, (-math.inf, NOWHERE)
+
+    def decisions(self, start: float) -> tuple[Decision, ...]:
+        """See `Bridge`."""
+        return tuple(
+            Decision("bridge trained", t.rows, "epochs", "data", f"{t.time - start:.1f} s; {t.noise.text}")
+            for t in self.trainings
+        )
 
     def copy(self) -> Self:
         """See `Bridge`: values are shared, lists are not."""

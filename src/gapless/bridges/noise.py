@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final, NamedTuple
@@ -16,6 +17,10 @@ Predict = Callable[[Array], Array]
 """A trained learner: rows in, rows out."""
 ATTITUDE: Final = np.eye(3) * np.deg2rad(1.0) ** 2
 """Noise of a predicted attitude, which no fix states one for [rad^2]; our choice."""
+
+
+CHI_SQUARE_95: Final = 3.84
+"""95 % quantile of chi-square of one degree: calibrated bounds hold so many of the held-out misses."""
 
 
 class Missed(NamedTuple):
@@ -38,6 +43,11 @@ class FilterNoise:
     """The papers': a pseudo-fix is as good as the last fix, however long ago that was."""
 
     held_out: float = 0.0
+
+    @property
+    def text(self) -> str:
+        """What a summary says of it."""
+        return "as sure as the last fix"
 
     def fitted(self, missed: Sequence[Missed]) -> FilterNoise:
         """Nothing to fit.
@@ -94,6 +104,14 @@ class CalibratedNoise:
     growth: Mapping[str, tuple[float, float]] | None = None
     held_out: float = 0.4
 
+    @property
+    def text(self) -> str:
+        """What a summary says of it."""
+        if self.growth is None:
+            return "too little was held out to calibrate with: it says nothing"
+        grown = {name: (math.sqrt(a), math.sqrt(b)) for name, (a, b) in sorted(self.growth.items())}
+        return "calibrated: " + ", ".join(f"{name} {a:.2g} + {b:.2g}/s" for name, (a, b) in grown.items())
+
     def fitted(self, missed: Sequence[Missed]) -> CalibratedNoise:
         """Growth of what was wrong.
 
@@ -147,7 +165,9 @@ def _growth(rows: Array) -> tuple[float, float]:
         if a < 0.0:
             a, b = 0.0, float((weight * age2) @ (weight * squares) / ((weight * age2) @ (weight * age2)))
         weight = 1.0 / np.maximum(a + b * age2, 1e-3 * float(squares.mean()) + 1e-12)
-    return a, b
+    worst = float(np.quantile(squares / (a + b * age2 + 1e-12), 0.95))
+    tail = max(1.0, worst / CHI_SQUARE_95)
+    return a * tail, b * tail
 
 
 def rehearse(model: Model, predict: Predict, epochs: Sequence[Epoch], horizon: int) -> list[Missed]:

@@ -20,9 +20,10 @@ from gapless.sensors import grade as named_grade
 from gapless.simulate import profile as named_profile
 from gapless.sweeps.run import Run
 from gapless.sweeps.sources import Logged, Simulated, logged
-from gapless.systems.adjust import changed
-from gapless.systems.library import load, loads, typed
-from gapless.systems.recipe import Positive, System
+from gapless.systems.adjust import changed, named
+from gapless.systems.library import loads, typed
+from gapless.systems.recipe import System
+from gapless.systems.values import Positive
 
 Name = Annotated[str, Meta(pattern=r"^[A-Za-z0-9][A-Za-z0-9._-]*$")]
 Seed = Annotated[int, Meta(ge=0)]

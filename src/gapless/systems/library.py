@@ -17,6 +17,7 @@ from gapless.errors import ConfigError
 from gapless.filters.adaptation.registry import KINDS, check
 from gapless.inertial.layout import EXTRAS
 from gapless.systems.learning import check as check_bridge
+from gapless.systems.prepare import denoiser
 from gapless.systems.recipe import System
 
 T = TypeVar("T", bound=Struct)
@@ -99,6 +100,10 @@ def checked(tables: Mapping[str, Any], where: str) -> System:
         except ConfigError as error:
             raise ConfigError(f"{where}: {error}") from None
     check_bridge(system.bridge, where)
+    try:
+        denoiser(system.denoise)
+    except ConfigError as error:
+        raise ConfigError(f"{where}: {error}") from None
     return system
 
 
@@ -173,7 +178,7 @@ def load(name: str | Path) -> System:
 
 def _built_in(name: str) -> str:
     """The text of a built-in recipe."""
-    found = files("gapless.systems").joinpath(f"{name}.toml")
+    found = files("gapless.systems").joinpath("recipes", f"{name}.toml")
     if name not in names():
         raise ConfigError(
             f"system {name!r} is unknown; choose from {', '.join(names())} or give a .toml file"
@@ -212,5 +217,5 @@ def names() -> list[str]:
     -------
     list of str
     """
-    folder = files("gapless.systems").iterdir()
+    folder = files("gapless.systems").joinpath("recipes").iterdir()
     return sorted(entry.name.removesuffix(".toml") for entry in folder if entry.name.endswith(".toml"))

@@ -12,6 +12,7 @@ from msgspec import Meta, Struct
 
 from gapless.filters.adaptation.registry import RULES
 from gapless.systems.learning import BridgeUse, LearnerUse
+from gapless.systems.prepare import DenoiseUse
 from gapless.systems.values import Angle, Auto, NonNegative, Offset, Positive
 
 
@@ -154,5 +155,6 @@ class System(Struct, forbid_unknown_fields=True, frozen=True):
     clock: Clock = Clock()
     mounting: Mounting = Mounting()
     alignment: Alignment = Alignment()
+    denoise: DenoiseUse = DenoiseUse()
     bridge: BridgeUse = BridgeUse()
     learner: LearnerUse = LearnerUse()
