@@ -74,3 +74,13 @@ def residual_weights(residual: Array, weight: Array) -> Array:
         return np.ones(len(residual))
     surprise = np.abs(residual) / spread
     return np.clip((_NONE - surprise) / (_NONE - _FULL), _LEAST, 1.0)
+
+
+def weighted_relm() -> ResidualWeighted:
+    """RELM weighted by residuals.
+
+    Returns
+    -------
+    ResidualWeighted
+    """
+    return ResidualWeighted(relm())
