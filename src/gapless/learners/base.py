@@ -52,9 +52,7 @@ class Learner(MultiOutputMixin, RegressorMixin, BaseEstimator):
     ) -> tuple[Array, Array, Array]:
         """Inputs (n, m), targets (n, k) and positive weights (n,); samples of weight zero are gone."""
         self._validate_params()
-        X, y = validate_data(
-            self, X, y, reset=reset, dtype=np.float64, multi_output=True, y_numeric=True
-        )
+        X, y = validate_data(self, X, y, reset=reset, dtype=np.float64, multi_output=True, y_numeric=True)
         weight = _check_sample_weight(sample_weight, X, dtype=np.float64)
         if np.any(weight < 0.0) or not np.any(weight > 0.0):
             raise ValueError("sample_weight must not be negative, nor zero throughout; mend the weights")

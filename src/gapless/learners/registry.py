@@ -67,11 +67,12 @@ def make(name: str, params: Mapping[str, Any] | None = None, seed: int = 0) -> R
     learner = _with(_bare(name), dict(params or {}), f"learner {name!r}")
     names = learner.get_params()
     learner.set_params(**{key: seed for key in names if key.split("__")[-1] == "random_state"})
-    get_tags = import_module("sklearn.utils").get_tags
-    if not get_tags(learner).target_tags.multi_output:
-        learner = import_module("gapless.learners.per_output").PerOutput(learner)
-    scaled: Regressor = import_module("gapless.learners.scaling").Scaled(learner)
-    return scaled
+    from sklearn.utils import get_tags
+
+    from gapless.learners.per_output import PerOutput
+    from gapless.learners.scaling import Scaled
+
+    return Scaled(learner if get_tags(learner).target_tags.multi_output else PerOutput(learner))
 
 
 def _bare(name: str) -> Any:
@@ -83,8 +84,12 @@ def _bare(name: str) -> Any:
             "scikit-learn such as sklearn.linear_model.Ridge"
         )
     learner = _made(_found(entry) if isinstance(entry, str) else entry, name)
-    if not import_module("sklearn.base").is_regressor(learner):
-        raise ConfigError(f"learner {name!r} is not a regressor; choose one, such as sklearn.linear_model.Ridge")
+    from sklearn.base import is_regressor
+
+    if not is_regressor(learner):
+        raise ConfigError(
+            f"learner {name!r} is not a regressor; choose one, such as sklearn.linear_model.Ridge"
+        )
     return learner
 
 
@@ -97,7 +102,7 @@ def _made(build: Any, name: str) -> Any:
 
 def _found(path: str) -> Any:
     try:
-        import_module("sklearn")
+        import sklearn
     except ImportError as error:
         raise MissingExtraError("scikit-learn", "learn") from error
     module, _, attribute = path.rpartition(".")
@@ -105,7 +110,7 @@ def _found(path: str) -> Any:
         return getattr(import_module(module), attribute)
     except (ImportError, AttributeError):
         raise ConfigError(
-            f"learner {path!r} is not in scikit-learn {import_module('sklearn').__version__}; check its path"
+            f"learner {path!r} is not in scikit-learn {sklearn.__version__}; check its path"
         ) from None
 
 

@@ -113,7 +113,9 @@ def loads(data: bytes, where: str = "model", n_features: int | None = None) -> A
     if kind != _KIND or not isinstance(format_, int):
         raise ModelError(f"{where}: not a saved learner but {str(kind)[:40]!r}; give another file")
     if format_ > FORMAT:
-        raise ModelError(f"{where}: format {format_} is newer than {FORMAT}, the newest known; update gapless")
+        raise ModelError(
+            f"{where}: format {format_} is newer than {FORMAT}, the newest known; update gapless"
+        )
     if n_features is not None and header.get("features") != n_features:
         raise ModelError(
             f"{where}: the model takes {header.get('features')} features, not {n_features}; "
@@ -133,11 +135,12 @@ def _model(header: dict[str, Any], arrays: list[Array], where: str) -> Any:
     except ModelError as error:
         raise ModelError(f"{where}: {error}") from None
     except Exception as error:  # whatever a damaged file makes a library say
-        raise ModelError(f"{where}: damaged ({error!s:.120}); train and save it again".replace("\n", " ")) from None
-    if not agree:
         raise ModelError(
-            f"{where}: the model does not answer as it did when saved with {header.get('versions')}; train it again"
-        )
+            f"{where}: damaged ({error!s:.120}); train and save it again".replace("\n", " ")
+        ) from None
+    if not agree:
+        then = header.get("versions")
+        raise ModelError(f"{where}: answers otherwise than when saved with {then}; train it again")
     return model
 
 
@@ -184,7 +187,9 @@ def _encoded_array(value: Array, arrays: list[Array], where: str, scalar: bool) 
 def _encoded_estimator(value: Any, arrays: list[Array], where: str) -> Any:
     kind = type(value)
     if not isinstance(value, BaseEstimator) or _listed(kind.__name__) is not kind:
-        raise ModelError(f"{where} is a {kind.__name__} and cannot be saved; choose from {', '.join(CLASSES)}")
+        raise ModelError(
+            f"{where} is a {kind.__name__} and cannot be saved; choose from {', '.join(CLASSES)}"
+        )
     params = value.get_params(deep=False)
     fitted = {
         name: v
@@ -229,7 +234,9 @@ def _decoded(node: Any, arrays: list[Array]) -> Any:
 def _decoded_estimator(node: dict[str, Any], arrays: list[Array]) -> Any:
     name = node["estimator"]
     if name not in CLASSES:
-        raise ModelError(f"class {str(name)[:40]!r} is not one that may be loaded; choose from {', '.join(CLASSES)}")
+        raise ModelError(
+            f"class {str(name)[:40]!r} is not one that may be loaded; choose from {', '.join(CLASSES)}"
+        )
     kind = _listed(name)
     model = kind(**{key: _decoded(v, arrays) for key, v in node["params"].items()})
     for key, value in node["fitted"].items():
