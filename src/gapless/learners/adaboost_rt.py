@@ -147,3 +147,13 @@ def _seeded(base: Any, rng: Any) -> Any:
     model = clone(base)
     names = sorted(name for name in model.get_params() if name.split("__")[-1] == "random_state")
     return model.set_params(**{name: int(rng.randint(2**31 - 1)) for name in names})
+
+
+def erelm() -> AdaBoostRT:
+    """ERELM: modified AdaBoost.RT over 20 RELMs (georges2015, section 3.4).
+
+    Returns
+    -------
+    AdaBoostRT
+    """
+    return AdaBoostRT(relm())

@@ -100,4 +100,6 @@ def next_generation(
             point = rng.randint(1, length)
             pair = children[first : first + 2, point:]
             pair[:] = pair[::-1].copy()
-    return children ^ (rng.uniform(size=people.shape) < mutation)
+    flips: Bits = (rng.uniform(size=people.shape) < mutation).astype(np.uint8)
+    mutated: Bits = children ^ flips
+    return mutated

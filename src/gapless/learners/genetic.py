@@ -151,3 +151,13 @@ class GeneticSearchCV(OutputByOutput):
         if self.tolerance is None or len(history) < 2:
             return False
         return abs(history[-1][0] - history[-2][0]) < self.tolerance
+
+
+def ga_svr() -> GeneticSearchCV:
+    """GA-SVR: gamma in (0, 1000] and C in (0, 500] by evolution (tan2015).
+
+    Returns
+    -------
+    GeneticSearchCV
+    """
+    return GeneticSearchCV(MeanLossSVR())

@@ -10,7 +10,6 @@ from sklearn.base import BaseEstimator, clone
 from sklearn.utils._param_validation import Integral, Interval, StrOptions
 from sklearn.utils.validation import check_array, check_is_fitted, validate_data
 
-from gapless.learners.network import mlp
 from gapless.learners.rbf import RBFNetwork
 from gapless.learners.scaling import Scaled
 from gapless.recording import Array
@@ -37,7 +36,8 @@ def autocorrelation(series: Array, max_lag: int) -> Array:
     power = (centred**2).sum(axis=0)
     n = len(series)
     sums = np.array([(centred[: n - lag] * centred[lag:]).sum(axis=0) for lag in range(max_lag + 1)])
-    return np.divide(sums, power, out=np.zeros_like(sums), where=power > 0.0)
+    rho: Array = np.divide(sums, power, out=np.zeros_like(sums), where=power > 0.0)
+    return rho
 
 
 def autocorrelation_order(series: Any, max_order: int = MAX_ORDER) -> int:
@@ -94,8 +94,8 @@ class NAR(BaseEstimator):
 
     Parameters
     ----------
-    regressor : estimator, optional
-        f; the feed-forward network, scaled, if None.
+    regressor : estimator
+        f; whatever `make` makes.
     order : int or "auto"
         q; "auto" takes it from the autocorrelation.
     segment : int
@@ -121,7 +121,7 @@ class NAR(BaseEstimator):
     }
 
     def __init__(
-        self, regressor: Any = None, order: int | str = 5, segment: int = 1, train_share: float = 0.75
+        self, regressor: Any, order: int | str = 5, segment: int = 1, train_share: float = 0.75
     ) -> None:
         self.regressor = regressor
         self.order = order
@@ -158,7 +158,7 @@ class NAR(BaseEstimator):
                 f"{self.segment} need {need}; give a longer series or a smaller order"
             )
         inputs, targets = lagged(series[:cut], self.order_, self.segment)
-        self.regressor_ = clone(Scaled(mlp()) if self.regressor is None else self.regressor)
+        self.regressor_ = clone(self.regressor)
         self.regressor_.fit(inputs, targets)
         self.test_rms_ = self._rms(series[cut - self.order_ :])
         self.last_ = series[-self.order_ :]
@@ -170,7 +170,8 @@ class NAR(BaseEstimator):
             return np.full(columns, np.nan)
         inputs, targets = lagged(series, self.order_, self.segment)
         error = (self._ahead(inputs) - targets).reshape(-1, columns)
-        return np.sqrt((error**2).mean(axis=0))
+        rms: Array = np.sqrt((error**2).mean(axis=0))
+        return rms
 
     def _ahead(self, windows: Array) -> Array:
         answer: Array = np.reshape(self.regressor_.predict(windows), (len(windows), -1))
@@ -192,17 +193,17 @@ class NAR(BaseEstimator):
         check_is_fitted(self)
         rows = self.last_ if past is None else check_array(past, dtype=np.float64)
         if len(rows) < self.order_ or rows.shape[1] != self.n_features_in_:
-            raise ValueError(
-                f"past has shape {rows.shape}; give {self.order_} rows or more of {self.n_features_in_} columns"
-            )
-        rows, given = rows[-self.order_ :], self.order_
-        while len(rows) < given + steps:
-            ahead = self._ahead(rows[-self.order_ :].reshape(1, -1))
-            rows = np.vstack([rows, ahead.reshape(self.segment, -1)])
-        return rows[given : given + steps]
+            wanted = f"{self.order_} rows or more of {self.n_features_in_} columns"
+            raise ValueError(f"past has shape {rows.shape}; give {wanted}")
+        window, parts = rows[-self.order_ :], [np.zeros((0, self.n_features_in_))]
+        for _ in range(-(-steps // self.segment)):
+            parts.append(self._ahead(window.reshape(1, -1)).reshape(self.segment, -1))
+            window = np.vstack([window, parts[-1]])[-self.order_ :]
+        ahead: Array = np.vstack(parts)[:steps]
+        return ahead
 
 
-def asfp(window: int = 10, segment: int = 5) -> NAR:
+def asfp(window: int = 10, segment: int = 5, seed: int = 0) -> NAR:
     """One of the two predictors of ASFP: an RBF network that goes forward segment by segment.
 
     One is for position errors and one for velocity errors (Semeniuk and Noureldin 2006, as wang2018
@@ -214,9 +215,10 @@ def asfp(window: int = 10, segment: int = 5) -> NAR:
         Rows of the past.
     segment : int
         Rows predicted at a time.
+    seed : int
 
     Returns
     -------
     NAR
     """
-    return NAR(Scaled(RBFNetwork()), order=window, segment=segment)
+    return NAR(Scaled(RBFNetwork(random_state=seed)), order=window, segment=segment)

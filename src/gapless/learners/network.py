@@ -18,4 +18,6 @@ def mlp() -> Any:
     -------
     sklearn.neural_network.MLPRegressor
     """
-    return MLPRegressor((20,), activation="tanh", solver="lbfgs", alpha=1e-3, max_iter=500, tol=1e-6)
+    return MLPRegressor(
+        hidden_layer_sizes=(20,), activation="tanh", solver="lbfgs", alpha=1e-3, max_iter=500, tol=1e-6
+    )

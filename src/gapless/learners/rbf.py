@@ -116,4 +116,5 @@ def spacing(centres: Array) -> Array:
     if len(centres) == 1:
         return np.ones(1)
     nearest = np.sort(squared_distances(centres, centres), axis=1)[:, 1 : 1 + _NEIGHBOURS]
-    return np.maximum(np.sqrt(nearest.mean(axis=1)), 1e-6)
+    widths: Array = np.maximum(np.sqrt(nearest.mean(axis=1)), 1e-6)
+    return widths

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import warnings
 from typing import Any, ClassVar, Self
 
 import numpy as np
 from sklearn.base import clone
+from sklearn.exceptions import ConvergenceWarning
 from sklearn.preprocessing import MinMaxScaler
 from sklearn.utils import get_tags
 from sklearn.utils.metaestimators import available_if
@@ -68,10 +70,12 @@ class Scaled(Learner):
         self.inputs_ = MinMaxScaler((-1.0, 1.0)).fit(X)
         self.targets_ = MinMaxScaler((-1.0, 1.0)).fit(targets)
         self.regressor_ = clone(self._chosen())
-        self.regressor_.fit(*self._scaled(X, targets), **fit_params)
+        with warnings.catch_warnings():  # iterations are a budget: to use it up is no mishap
+            warnings.simplefilter("ignore", ConvergenceWarning)
+            self.regressor_.fit(*self._scaled(X, targets), **fit_params)
         return self
 
-    @available_if(_goes_on)
+    @available_if(_goes_on)  # type: ignore[untyped-decorator]  # scikit-learn has no types
     def partial_fit(self, X: Any, y: Any, **fit_params: Any) -> Self:
         """Go on with more samples, where the regressor can; the bounds stay.
 

@@ -73,4 +73,15 @@ def residual_weights(residual: Array, weight: Array) -> Array:
     if spread <= np.finfo(float).eps * np.abs(residual).max():  # half of the residuals are one
         return np.ones(len(residual))
     surprise = np.abs(residual) / spread
-    return np.clip((_NONE - surprise) / (_NONE - _FULL), _LEAST, 1.0)
+    trust: Array = np.clip((_NONE - surprise) / (_NONE - _FULL), _LEAST, 1.0)
+    return trust
+
+
+def weighted_relm() -> ResidualWeighted:
+    """RELM weighted by residuals.
+
+    Returns
+    -------
+    ResidualWeighted
+    """
+    return ResidualWeighted(relm())
