@@ -16,6 +16,7 @@ from gapless.cli.inspect import inspect
 from gapless.cli.report import report
 from gapless.cli.simulate import simulate
 from gapless.cli.sweep import sweep
+from gapless.cli.systems import systems
 from gapless.errors import GaplessError
 
 REFUSED = 2
@@ -84,7 +85,7 @@ def gapless() -> None:
     """  # noqa: D301 - click's mark for lines that stay as they are, not a backslash
 
 
-for _verb in (inspect, fuse, bench, report, simulate, convert, sweep):
+for _verb in (inspect, fuse, systems, bench, report, simulate, convert, sweep):
     gapless.add_command(_verb)
 
 

@@ -155,6 +155,7 @@ def _sources(
 
 
 def _methods(systems: str) -> Sequence[Method]:
+    from gapless.cli.options import scipy_again
     from gapless.laboratory.recipes import Recipe, smoothed
     from gapless.systems.adjust import named
 

@@ -203,9 +203,9 @@ def _systems(name: str, variants: Iterable[dict[str, Any]], folder: Path, where:
     smooth = name == SMOOTHED
     with _at(where):
         if smooth:
-            system = replace(load("constraints"), name=SMOOTHED)
+            system = replace(named("constraints"), name=SMOOTHED)
         else:
-            system = load(folder / name if name.endswith(".toml") else name)
+            system = named(str(folder / name) if name.endswith(".toml") else name)
     found = []
     for override in variants:
         tables = msgspec.to_builtins(changed(system, override, f"{where} with override"))

@@ -17,7 +17,6 @@ from gapless.systems.prepare import DenoiseUse
 from gapless.systems.recipe import Clock, System
 from gapless.systems.values import Offset
 
-
 PARTS: Final = {"bridge": BridgeUse(), "denoise": DenoiseUse()}
 """Parts that a system can do without, and what is left then."""
 
@@ -57,7 +56,8 @@ def named(text: str) -> System:
     ConfigError
         If there is no such recipe or part.
     """
-    base, out = text.removesuffix("+constraints"), []
+    out: list[str] = []
+    base = text.removesuffix("+constraints")
     while base not in names():
         shorter, dash, last = base.rpartition("-")
         if not dash or last not in (*_choices("constraints"), *_choices("sensors"), *PARTS):

@@ -173,11 +173,26 @@ def load(name: str | Path) -> System:
             return parse(path.read_text(encoding="utf-8"), str(path))
         except (OSError, UnicodeDecodeError) as error:
             raise ConfigError(f"{path}: cannot be read ({error}); give a TOML file") from None
-    return parse(_built_in(str(name)), f"{name}.toml")
+    return parse(source(str(name)), f"{name}.toml")
 
 
-def _built_in(name: str) -> str:
-    """The text of a built-in recipe."""
+def source(name: str) -> str:
+    """The text of a built-in recipe.
+
+    Parameters
+    ----------
+    name : str
+
+    Returns
+    -------
+    str
+        TOML.
+
+    Raises
+    ------
+    ConfigError
+        If there is none of that name.
+    """
     found = files("gapless.systems").joinpath("recipes", f"{name}.toml")
     if name not in names():
         raise ConfigError(
@@ -196,7 +211,7 @@ def _complete(tables: Mapping[str, Any], where: str) -> dict[str, Any]:
         raise ConfigError(f"{where}: {LIKE}: no system {base!r}; choose from {', '.join(names())}")
     if f"{base}.toml" == where:
         raise ConfigError(f"{where}: {LIKE}: a recipe cannot be like itself")
-    return _merged(_complete(loads(_built_in(base), f"{base}.toml"), f"{base}.toml"), own)
+    return _merged(_complete(loads(source(base), f"{base}.toml"), f"{base}.toml"), own)
 
 
 def _merged(base: Mapping[str, Any], own: Mapping[str, Any]) -> dict[str, Any]:
