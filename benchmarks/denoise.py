@@ -56,9 +56,8 @@ def decomposition() -> None:
     same = seconds(lambda: EMD(FIXE=SIFTINGS, range_thr=0.0, total_power_thr=0.0)(x[:SHORT]))
     own = seconds(lambda: EMD()(x[:SHORT]))
     print(f"one decomposition: ours {short:.3f} s for {SHORT} samples, {long:.2f} s for 240000;")
-    print(
-        f"PyEMD takes {same / short:.0f} times as long for the former with as many siftings, {own / short:.0f} times by its own rule"
-    )
+    print(f"PyEMD, of the former, takes {same / short:.0f} times as long with as many siftings,")
+    print(f"and {own / short:.0f} times by its own rule")
 
 
 def speed(measured: Imu, duration: float) -> None:

@@ -55,9 +55,7 @@ def test_bayesian_shrinkage_leaves_least_error():
 @pytest.mark.parametrize("denoiser", [Wavelet(), EmdCiit()])
 def test_without_pywavelets_one_line_says_what_to_install(denoiser, monkeypatch):
     monkeypatch.setitem(sys.modules, "pywt", None)
-    with pytest.raises(
-        MissingExtraError, match=r"PyWavelets is not installed; run: pip install 'gapless\[learn\]'"
-    ):
+    with pytest.raises(MissingExtraError, match=r"PyWavelets is not .* pip install 'gapless\[learn\]'"):
         denoiser(noisy(), RATE)
 
 
