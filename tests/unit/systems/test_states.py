@@ -11,7 +11,7 @@ from gapless.reports.terminal import summary_lines
 from gapless.simulate import Receiver, Vehicle, WheelSensor, simulate
 from gapless.solution import observability
 from gapless.systems.fuse import fuse
-from gapless.systems.recipe import parse
+from gapless.systems.library import parse
 
 RTK = Receiver(
     position_white=(0.02, 0.02, 0.04), position_correlated=(0.0, 0.0, 0.0), velocity=(0.1, 0.1, 0.1)
