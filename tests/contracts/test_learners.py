@@ -18,7 +18,7 @@ from gapless.learners.weighting import ResidualWeighted
 SMALL = {
     "ga_svr": {"population": 4, "generations": 2, "ranges": {"gamma": (0.0, 0.2), "C": (0.0, 500.0)}},
     "erelm": {"rounds": 3},
-    "mlp": {"max_iter": 30},
+    "mlp": {"max_iter": 15},
 }
 """The same methods on a smaller budget: the checks fit each some hundred times."""
 LIBRARY = ["sklearn.linear_model.Ridge", "sklearn.svm.SVR"]

@@ -38,7 +38,7 @@ LIBRARY = [
 ]
 
 
-@pytest.mark.filterwarnings("ignore:.*iterations:sklearn.exceptions.ConvergenceWarning")
+@pytest.mark.filterwarnings("ignore::sklearn.exceptions.ConvergenceWarning")
 @pytest.mark.parametrize("model", LIBRARY, ids=lambda model: type(model).__name__)
 def test_estimators_of_scikit_learn(model):
     assert np.array_equal(loads(dumps(model.fit(X, Y))).predict(X), model.predict(X))
