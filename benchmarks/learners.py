@@ -127,9 +127,7 @@ def boosting(seeds: int) -> None:
 
 def searching(seeds: int, generations: int = 10) -> None:
     """Cross-validated and test RMS of SVR as others tune it, over GA's at the same number of trials."""
-    print(
-        f"\nRMS of SVR over that of GA-SVR, at GA's number of trials (20 x {generations}; above 1: GA is better)"
-    )
+    print(f"\nRMS of SVR over that of GA-SVR, both of 20 x {generations} trials; above 1, GA is better")
     folds = KFold(5)
     common = {"cv": folds, "scoring": "neg_root_mean_squared_error"}
     tables: dict[str, list[list[float]]] = {}

@@ -213,6 +213,12 @@ def test_a_model_for_other_inputs_is_refused():
         loads(GOOD, n_features=4)
 
 
+def test_a_pipeline_with_a_cache_of_pickles_is_refused(tmp_path):
+    model = make_pipeline(MinMaxScaler(), Ridge(), memory=str(tmp_path)).fit(X, Y)
+    with pytest.raises(ModelError, match="Pipeline has a memory, which is not loaded; save it without"):
+        loads(dumps(model))
+
+
 def test_an_svr_whose_parts_do_not_fit_never_reaches_the_c_library():
     good = dumps(SVR().fit(X, Y[:, 0]))
 
