@@ -53,10 +53,11 @@ class Imu(Struct, forbid_unknown_fields=True, frozen=True):
 
 
 class Filter(Struct, forbid_unknown_fields=True, frozen=True):
-    """States beyond the fifteen, the correction's way, and how often things are done."""
+    """States beyond the fifteen, the correction's way, how moments pass, and how often things are done."""
 
     states: tuple[str, ...] = ("gyro_scale",)
     correction: Literal["feedback", "feedforward"] = "feedback"
+    moments: Literal["taylor", "cubature"] = "taylor"
     covariance_period: Annotated[float, Meta(ge=0.0, le=0.1)] = 0.05
     tick: Annotated[float, Meta(ge=0.05, le=1.0)] = 0.1
 
@@ -238,6 +239,11 @@ def checked(tables: Mapping[str, Any], where: str) -> System:
         raise ConfigError(f"{where}: filter.states names a block twice; name each once")
     if unknown:
         raise ConfigError(f"{where}: filter.states has {unknown[0]!r}; choose from {', '.join(EXTRAS)}")
+    if system.filter.moments == "cubature" and system.filter.correction == "feedforward":
+        raise ConfigError(
+            f"{where}: filter.moments = 'cubature' needs filter.correction = 'feedback': "
+            "its points surround a nominal state that is corrected"
+        )
     for kind in KINDS:
         try:
             check(kind, getattr(system.adaptation, kind))
