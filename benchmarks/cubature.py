@@ -55,8 +55,8 @@ def main() -> None:
             base = base or one
             points = 2 * Layout(extras).n
             print(
-                f"{name}, covariance at {text:12s}: Taylor {one:5.2f} us a sample ({one / base:4.2f} of the first), "
-                f"cubature of {points} points {other:6.2f} us, {other / one:4.1f} times"
+                f"{name}, covariance at {text:12s}: Taylor {one:5.2f} us a sample ({one / base:5.2f} of the "
+                f"first), cubature of {points} points {other:6.2f} us, {other / one:4.1f} times"
             )
 
 

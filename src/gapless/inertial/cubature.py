@@ -45,12 +45,10 @@ _NONE = (0.0, 0.0, 0.0)
 @inline
 def _corrected(raw: Three, x: Any, scale: Any, bias: Any, dt: Any) -> Three:
     """Summed increments less a point's own errors."""
-    gain = x[scale : scale + 3] if scale > 0 else np.zeros(3)
-    return (
-        raw[0] * (1.0 + gain[0]) - x[bias] * dt,
-        raw[1] * (1.0 + gain[1]) - x[bias + 1] * dt,
-        raw[2] * (1.0 + gain[2]) - x[bias + 2] * dt,
-    )
+    a, b, c = raw
+    if scale > 0:
+        a, b, c = a * (1.0 + x[scale]), b * (1.0 + x[scale + 1]), c * (1.0 + x[scale + 2])
+    return a - x[bias] * dt, b - x[bias + 1] * dt, c - x[bias + 2] * dt
 
 
 @inline
@@ -70,18 +68,18 @@ def _carry(x: Array, offsets: Any, w: Three, f: Three, dt: Any, out: Array) -> N
 
 @inline
 def _apart(a: Array, b: Array, metres: Three, was: Array, out: Array) -> None:
-    """Error state that leads from b to a; a rotation of more than half a turn as near as may be to `was`."""
+    """Error state that leads from b to a; of the turns that do, the one nearest to what it `was`."""
     out[0], out[1], out[2] = (a[0] - b[0]) * metres[0], (a[1] - b[1]) * metres[1], b[2] - a[2]
     for i in range(3):
         out[3 + i] = a[3 + i] - b[3 + i]
     d = product((a[6], a[7], a[8], a[9]), (b[6], -b[7], -b[8], -b[9]))
     s = np.sqrt(d[1] * d[1] + d[2] * d[2] + d[3] * d[3])
-    out[6], out[7], out[8] = 2.0 * d[1] / d[0], 2.0 * d[2] / d[0], 2.0 * d[3] / d[0]
+    k = 2.0 / d[0]
     if s > 1e-9:
         angle = 2.0 * np.arctan2(s, d[0])
         along = (d[1] * was[6] + d[2] * was[7] + d[3] * was[8]) / s
-        angle += 2.0 * np.pi * np.round((along - angle) / (2.0 * np.pi))
-        out[6], out[7], out[8] = d[1] / s * angle, d[2] / s * angle, d[3] / s * angle
+        k = (angle + 2.0 * np.pi * np.round((along - angle) / (2.0 * np.pi))) / s
+    out[6], out[7], out[8] = k * d[1], k * d[2], k * d[3]
 
 
 @kernel
@@ -117,7 +115,7 @@ def spread(
         for side in range(2):
             point[:] = x
             for j in range(n):
-                dx[j] = (reach - 2.0 * side * reach) * low[j, i]
+                dx[j] = (1.0 - 2.0 * side) * reach * low[j, i]
             inject(point, dx)
             _carry(point, offsets, w, f, dt, after)
             _apart(after, centre, metres, dx, y[side])
@@ -137,22 +135,27 @@ def _metres(x: Array) -> Three:
 def _gather(half: Array, extra: Array, low: Array, tail: Array, p: Array) -> None:
     """P' of the step without its noise: navigation from the points, the rest as it decays."""
     n = half.shape[0]
+    share, root = 1.0 / n, 1.0 / np.sqrt(n)
     for r in range(NAV):
         for c in range(NAV):
-            a = extra[r, c]
-            for i in range(n):
-                a += half[i, r] * half[i, c] / n
-            p[r * ROW + c] = a
-        for j in range(NAV, n):
-            a = 0.0
-            for i in range(j + 1):
-                a += half[i, r] * low[j, i]
-            a *= tail[j] / np.sqrt(n)
-            p[r * ROW + j] = a
-            p[j * ROW + r] = a
-    for i in range(NAV, n):
-        for j in range(NAV, n):
-            p[i * ROW + j] *= tail[i] * tail[j]
+            p[r * ROW + c] = extra[r, c]
+    for i in range(n):
+        for r in range(NAV):
+            a = share * half[i, r]
+            for c in range(NAV):
+                p[r * ROW + c] += a * half[i, c]
+    for j in range(NAV, n):
+        row = p[j * ROW : j * ROW + n]
+        for c in range(NAV):
+            row[c] = 0.0
+        for i in range(j + 1):
+            a = root * tail[j] * low[j, i]
+            for c in range(NAV):
+                row[c] += a * half[i, c]
+        for c in range(NAV):
+            p[c * ROW + j] = row[c]
+        for i in range(NAV, n):
+            row[i] *= tail[i] * tail[j]
 
 
 @kernel

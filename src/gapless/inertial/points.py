@@ -65,16 +65,21 @@ def linearised(half: Array, low: Array) -> Array:
         cov(y, x) P^-1 = half' L^-1 / sqrt(n); zero for what is not uncertain.
     """
     n, m = half.shape
-    found, spread = np.zeros((m, n)), np.sqrt(n)
+    found, share = np.zeros((n, m)), 1.0 / np.sqrt(n)
     for back in range(n):
         j = n - 1 - back
         if low[j, j] > 0.0:
+            row = found[j]
             for r in range(m):
-                a = half[j, r] / spread
-                for i in range(j + 1, n):
-                    a -= found[r, i] * low[i, j]
-                found[r, j] = a / low[j, j]
-    return found
+                row[r] = half[j, r] * share
+            for i in range(j + 1, n):
+                a = low[i, j]
+                for r in range(m):
+                    row[r] -= a * found[i, r]
+            a = 1.0 / low[j, j]
+            for r in range(m):
+                row[r] *= a
+    return found.T.copy()
 
 
 @kernel
@@ -91,13 +96,15 @@ def scatter(middle: Array) -> tuple[Array, Array]:
     extra : ndarray, shape (m, m)
     """
     n, m = middle.shape
-    mean, extra = np.zeros(m), np.zeros((m, m))
+    mean, off, extra, share = np.zeros(m), np.empty(m), np.zeros((m, m)), 1.0 / n
     for i in range(n):
         for r in range(m):
-            mean[r] += middle[i, r] / n
+            mean[r] += share * middle[i, r]
     for i in range(n):
         for r in range(m):
-            a = (middle[i, r] - mean[r]) / n
+            off[r] = middle[i, r] - mean[r]
+        for r in range(m):
+            a = share * off[r]
             for c in range(m):
-                extra[r, c] += a * (middle[i, c] - mean[c])
+                extra[r, c] += a * off[c]
     return mean, extra
