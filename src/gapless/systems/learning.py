@@ -24,7 +24,8 @@ class BridgeUse(Struct, forbid_unknown_fields=True, frozen=True):
     `increment` learns the way that GNSS goes from epoch to epoch. `features` are shown now and
     `lags` - 1 epochs back, with `window` past errors; `reference` and `learns` say of what error.
     `noise` is the last fix's (as in the papers) or calibrated on held-out epochs. It trains on the
-    last `samples` epochs at least `interval` seconds apart, at an outage's onset or every `train` seconds, and leaves out `purge` epochs between those trained on and those held out.
+    last `samples` epochs at least `interval` seconds apart, at an outage's onset or every `train`
+    seconds, and leaves out `purge` epochs between those trained on and those held out.
     """
 
     model: Literal["none", "error", "increment"] = "none"
