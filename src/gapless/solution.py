@@ -91,6 +91,8 @@ class Solution:
         Time of the first IMU sample [s].
     notes : tuple of Note
         What was mended in the recording.
+    learned : tuple of object
+        Fitted learners of bridges, to be saved.
     """
 
     name: str
@@ -103,6 +105,7 @@ class Solution:
     outages: tuple[tuple[float, float], ...]
     start: float
     notes: tuple[Note, ...] = field(default=())
+    learned: tuple[object, ...] = field(default=())
 
     def in_outage(self, time: Array) -> NDArray[np.bool_]:
         """Which times lie in a withheld stretch.

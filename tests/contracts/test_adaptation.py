@@ -165,7 +165,7 @@ def test_a_wrong_r_is_found(name, factor):
 
 def test_what_makes_no_sense_is_refused_with_the_reason():
     refused = partial(pytest.raises, ConfigError)
-    with refused(match=r"adaptation\.gnss has 'gates'; choose from gate, chi_square"):
+    with refused(match=r"adaptation\.gnss has 'gates'; choose from gate, relock, chi_square"):
         chain("gnss", ["gates"])
     with refused(match="gate is named twice"):
         chain("gnss", ["gate", "gate"])
