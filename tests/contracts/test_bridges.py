@@ -1,4 +1,4 @@
-"""Laws of bridges: prefix and resume for every paper's system, silence untrained, and no harm if calibrated."""
+"""Laws of bridges: prefix and resume for every paper's system, silence untrained, no harm if calibrated."""
 
 from dataclasses import replace
 

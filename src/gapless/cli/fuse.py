@@ -152,7 +152,7 @@ def _navigate(work: Job, rate: float, smooth: bool) -> tuple[Solution, Scores | 
 
 def _save_model(solution: Solution, path: Path) -> None:
     from gapless.errors import ConfigError
-    from gapless.io.writers import atomic
+    from gapless.io.writers.atomic import atomic
 
     if not solution.learned:
         raise ConfigError(

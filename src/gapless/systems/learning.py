@@ -150,7 +150,7 @@ def _saved(path: str, model: Model, use: BridgeUse) -> Trained | None:
 
     if use.noise == "calibrated":
         raise ConfigError(
-            'a saved model has nothing held out; with learner.model use bridge.noise = "filter"'
+            'with learner.model nothing is held out to calibrate on; use bridge.noise = "filter"'
         )
     try:
         data = Path(path).read_bytes()

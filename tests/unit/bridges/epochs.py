@@ -24,20 +24,8 @@ def drive(n: int, seed: int = 0, speed: float = 10.0, segment_every: int = 10**6
         x = unknown().shadow.copy()
         x[:3] = earth.ned_to_lla(error[:3], place)
         x[3:6] = v_n + error[3:6]
-        made.append(
-            Epoch(
-                float(k),
-                1.0 if k else np.nan,
-                k // segment_every,
-                age,
-                x,
-                earth.lla_to_ned(x[:3], ORIGIN),
-                v_n,
-                np.array([0.0, 0.0, rate]),
-                np.array([0.0, speed * rate, -9.8]),
-                error[:6] + noise,
-                error,
-                place,
-            )  # fmt: skip
-        )
+        turn, force = np.array([0.0, 0.0, rate]), np.array([0.0, speed * rate, -9.8])
+        dt, segment, way = 1.0 if k else np.nan, k // segment_every, earth.lla_to_ned(x[:3], ORIGIN)
+        seen = error[:6] + noise
+        made.append(Epoch(float(k), dt, segment, age, x, way, v_n, turn, force, seen, error, place))
     return made
