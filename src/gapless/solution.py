@@ -91,13 +91,10 @@ class Solution:
         Time of the first IMU sample [s].
     notes : tuple of Note
         What was mended in the recording.
-<<<<<<< HEAD
     learned : tuple of object
         Fitted learners of bridges, to be saved.
-=======
     start_sd : dict of str to ndarray, shape (k,)
         By block, standard deviations before there were observations, where the first row knows of later ones.
->>>>>>> wt-filters
     """
 
     name: str
@@ -110,11 +107,8 @@ class Solution:
     outages: tuple[tuple[float, float], ...]
     start: float
     notes: tuple[Note, ...] = field(default=())
-<<<<<<< HEAD
     learned: tuple[object, ...] = field(default=())
-=======
     start_sd: dict[str, Array] = field(default_factory=dict)
->>>>>>> wt-filters
 
     def in_outage(self, time: Array) -> NDArray[np.bool_]:
         """Which times lie in a withheld stretch.

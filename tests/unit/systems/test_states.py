@@ -11,12 +11,8 @@ from gapless.reports.terminal import summary_lines
 from gapless.simulate import Receiver, Vehicle, WheelSensor, simulate
 from gapless.solution import observability
 from gapless.systems.fuse import fuse
-<<<<<<< HEAD
 from gapless.systems.library import parse
-=======
-from gapless.systems.recipe import parse
 from gapless.systems.smooth import smooth
->>>>>>> wt-filters
 
 RTK = Receiver(
     position_white=(0.02, 0.02, 0.04), position_correlated=(0.0, 0.0, 0.0), velocity=(0.1, 0.1, 0.1)
