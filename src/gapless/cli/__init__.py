@@ -14,6 +14,7 @@ from gapless.cli.convert import convert
 from gapless.cli.fuse import fuse
 from gapless.cli.inspect import inspect
 from gapless.cli.report import report
+from gapless.cli.reproduce import reproduce
 from gapless.cli.simulate import simulate
 from gapless.cli.sweep import sweep
 from gapless.errors import GaplessError
@@ -84,7 +85,7 @@ def gapless() -> None:
     """  # noqa: D301 - click's mark for lines that stay as they are, not a backslash
 
 
-for _verb in (inspect, fuse, bench, report, simulate, convert, sweep):
+for _verb in (inspect, fuse, bench, reproduce, report, simulate, convert, sweep):
     gapless.add_command(_verb)
 
 
