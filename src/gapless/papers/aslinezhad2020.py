@@ -35,7 +35,7 @@ RKF: Final = Method("RKF", "ins", {"adaptation.gnss": ["chi_square"]})
 FORWARD: Final = Method(
     "RKF + feed-forward",
     "aslinezhad2020",
-    {"bridge.kind": "position_error", "bridge.learner.name": "feed_forward"},
+    {"bridge.kind": "position_error", "learner.name": "feed_forward"},
 )
 NAR: Final = Method("RKF + NAR", "aslinezhad2020")
 METHODS: Final = (EKF, RKF, FORWARD, NAR, GATE, Method(OURS, "constraints"))

@@ -134,14 +134,18 @@ def ratios(results: Results) -> list[Ratio]:
 
 
 def _ratio(results: Results, claim: Claim) -> Ratio:
-    better, worse = ({_place(s): s for s in results.of(m, claim.where)} for m in (claim.better, claim.worse))
-    both = [k for k in better if k in worse and _both(better[k], worse[k], claim.key)]
-    if not both:
-        return Ratio(claim, 0, Interval(math.nan, math.nan, math.nan), NOT_RUN)
-    rows = [better[k] for k in both]
-    a, b = _values(rows, claim.key), _values([worse[k] for k in both], claim.key)
-    found = pair(a, b, order(*_places(rows))).geometric
-    return Ratio(claim, len(both), found, verdict(claim.ratio, found))
+    better, worse = (results.of(method, claim.where) for method in (claim.better, claim.worse))
+    count, found = _paired(better, worse, claim.key)
+    return Ratio(claim, count, found, verdict(claim.ratio, found) if count else NOT_RUN)
+
+
+def _paired(first: Sequence[Sample], second: Sequence[Sample], key: str) -> tuple[int, Interval]:
+    """Geometric mean of first over second in the same windows of the same drives."""
+    a, b = ({_place(s): s for s in samples} for samples in (first, second))
+    both = [k for k in a if k in b and _both(a[k], b[k], key)]
+    rows = [a[k] for k in both]
+    found = pair(_values(rows, key), _values([b[k] for k in both], key), order(*_places(rows)))
+    return len(both), found.geometric
 
 
 def _both(a: Sample, b: Sample, key: str) -> bool:
@@ -164,6 +168,24 @@ def verdict(theirs: float, ours: Interval) -> str:
     if not ours.hi < 1.0 and not ours.lo > 1.0:
         return OPEN
     return YES if (ours.hi < 1.0) == (theirs < 1.0) else NO
+
+
+def beside(aside: Results, main: Results, method: str, where: str, key: str) -> tuple[int, Interval]:
+    """The same method on the same seeds under another assumption: theirs over those of the main experiment.
+
+    Parameters
+    ----------
+    aside, main : Results
+    method, where, key : str
+
+    Returns
+    -------
+    count : int
+        Of windows that both have.
+    ratio : Interval
+        Geometric mean; NaN without any.
+    """
+    return _paired(aside.of(method, where), main.of(method, where), key)
 
 
 def rankings(results: Results) -> list[Ranking]:

@@ -91,11 +91,11 @@ VB_ACKF: Final = Method("VB-ACKF", "ins", {"filter.moments": "cubature", "adapta
 SVR_KF: Final = Method(
     "LS-SVR/KF",
     "georges2015",
-    {"bridge.learner.name": "ls_svr", "filter.moments": "taylor", "adaptation.gnss": []},
+    {"learner.name": "ls_svr", "filter.moments": "taylor", "adaptation.gnss": []},
 )
-SVR_VB: Final = Method("LS-SVR/VB-ACKS", "georges2015", {"bridge.learner.name": "ls_svr"})
+SVR_VB: Final = Method("LS-SVR/VB-ACKS", "georges2015", {"learner.name": "ls_svr"})
 ERELM: Final = Method("ERELM/VB-ACKS", "georges2015")
-RELM: Final = Method("RELM/VB-ACKS", "georges2015", {"bridge.learner.name": "relm"})
+RELM: Final = Method("RELM/VB-ACKS", "georges2015", {"learner.name": "relm"})
 METHODS: Final = (
     KF, CRTS, VB_ACKS, VB_ACKF, SVR_KF, SVR_VB, RELM, ERELM, Method(OURS, "constraints"),
 )  # fmt: skip

@@ -43,10 +43,10 @@ DRIVE: Final = Drive(
 """Table 1 and section 5.1: Dalian, 2,400 s, 5 Hz GNSS of 2.5 m, three outages of 120 s."""
 
 INS: Final = Method("Pure INS", "ins", {"sensors": ["position"]})
-RBN: Final = Method("RBN", "liu2019", {"bridge.learner.name": "rbf"})
-ELM: Final = Method("ELM", "liu2019", {"bridge.learner.name": "elm"})
+RBN: Final = Method("RBN", "liu2019", {"learner.name": "rbf"})
+ELM: Final = Method("ELM", "liu2019", {"learner.name": "elm"})
 RVFL: Final = Method("RVFL", "liu2019")
-RAW_ELM: Final = Method("ELM, raw", "liu2019", {"bridge.learner.name": "elm", "denoise": None})
+RAW_ELM: Final = Method("ELM, raw", "liu2019", {"learner.name": "elm", "denoise": None})
 RAW_RVFL: Final = Method("RVFL, raw", "liu2019", {"denoise": None})
 WAVELET_RVFL: Final = Method("RVFL, wavelet", "liu2019", {"denoise.method": "wavelet"})
 METHODS: Final = (

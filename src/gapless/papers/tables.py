@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from typing import Final
 
 from gapless.evaluation.resampling import FEWEST, Interval
 from gapless.laboratory.tables import Table
-from gapless.papers.compare import NOT_RUN, VERDICTS, Ranking, Ratio, mean, rankings, ratios
+from gapless.papers.compare import NOT_RUN, VERDICTS, Ranking, Ratio, beside, mean, rankings, ratios
 from gapless.papers.experiment import Reproduction, Results
 from gapless.papers.model import Column, Published, Window
 
@@ -24,6 +24,8 @@ _STANDARD: Final = (
     Column("heading", "attitude_heading_rmse"),
 )
 """What is shown of every method in every window, printed in the paper or not."""
+_CHANGED: Final = _STANDARD[-3:]
+"""What is told of another assumption."""
 
 
 def tables(done: Reproduction) -> list[Table]:
@@ -37,7 +39,11 @@ def tables(done: Reproduction) -> list[Table]:
     -------
     list of Table
     """
-    return [table for results in done.results for table in tables_of(results)]
+    found = [table for results in done.results for table in tables_of(results)]
+    simulated = [r for r in done.results if r.experiment.drive is not None]
+    main = [r for r in simulated if not r.experiment.aside]
+    asides = [r for r in simulated if r.experiment.aside]
+    return [*found, _aside(asides, main[0])] if asides and main else found
 
 
 def tables_of(results: Results) -> list[Table]:
@@ -103,7 +109,8 @@ def _measured(results: Results) -> Iterator[Table]:
         f"{results.experiment.name}: all that was run",
         head,
         tuple(rows),
-        f"{results.experiment.about} {_units(_STANDARD)}; RMSE, and the largest horizontal error. Mean over n windows"
+        f"{results.experiment.about} {_units(_STANDARD)}; RMSE, and the largest horizontal error. "
+        f"Mean over n windows"
         f"{_in_brackets(results)}{star}",
     )
 
@@ -143,6 +150,24 @@ def _orders(name: str, found: Iterable[Ranking]) -> Table:
         "From the smallest error to the largest; order: the paper's, says: ours, by the mean, of those run."
     )
     return Table(f"{name}: order of the methods", head, rows, note)
+
+
+def _aside(asides: Sequence[Results], main: Results) -> Table:
+    """What another assumption changes: the same seeds, error over that of the main experiment."""
+    rows = []
+    for results in asides:
+        for window in results.experiment.windows:
+            for method in results.experiment.methods:
+                found = [beside(results, main, method.name, window.name, column.key) for column in _CHANGED]
+                if found[0][0]:
+                    cells = (span(ratio) for _, ratio in found)
+                    rows.append((window.name, method.name, results.experiment.name, str(found[0][0]), *cells))
+    head = ("outages", "method", "label", "n", *(column.title for column in _CHANGED))
+    note = (
+        f'Error under the other assumption over that of the experiment "{main.experiment.name}", same seeds: '
+        "geometric mean with its 95 % interval; 1 where it changes nothing."
+    )
+    return Table("What another assumption changes", head, tuple(rows), note)
 
 
 def _absent(results: Results) -> Table:

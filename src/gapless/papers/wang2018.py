@@ -48,10 +48,10 @@ DRIVE: Final = Drive(
 INS: Final = Method("Pure INS", "ins")
 FF: Final = Method("FF", "ins", {"adaptation.gnss": ["fading"]})
 IFF: Final = Method("IFF", "ins", {"adaptation.gnss": ["improved_fading"]})
-RBF_IFF: Final = Method("RBF-IFF", "wang2018", {"bridge.learner.name": "rbf"})
-ELM_IFF: Final = Method("ELM-IFF", "wang2018", {"bridge.learner.name": "elm"})
+RBF_IFF: Final = Method("RBF-IFF", "wang2018", {"learner.name": "rbf"})
+ELM_IFF: Final = Method("ELM-IFF", "wang2018", {"learner.name": "elm"})
 IELM_IFF: Final = Method("IELM-IFF", "wang2018")
-ASFP: Final = Method("ASFP", "wang2018", {"bridge.kind": "asfp", "bridge.learner.name": "rbf"})
+ASFP: Final = Method("ASFP", "wang2018", {"bridge.kind": "asfp", "learner.name": "rbf"})
 STATE: Final = Method("O_INS-X_k", "wang2018", {"bridge.kind": "state_vector"})
 METHODS: Final = (
     INS, FF, IFF, RBF_IFF, ELM_IFF, ASFP, STATE, IELM_IFF, Method(OURS, "constraints"),
