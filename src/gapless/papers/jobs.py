@@ -151,7 +151,7 @@ def prepare(experiment: Experiment) -> tuple[tuple[Ready, ...], dict[str, str]]:
     ready, missing = [], {}
     for method in experiment.methods:
         try:
-            system = changed(load(method.recipe), {**told, **method.changes}, f"method {method.name}")
+            system = changed(load(method.recipe), {**told, **method.changes}, method.recipe)
             ready.append(Ready(method, system))
         except ConfigError as error:
             missing[method.name] = str(error)

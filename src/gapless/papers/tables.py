@@ -119,20 +119,23 @@ def _windows(results: Results) -> tuple[Window, ...]:
     return results.experiment.windows
 
 
-def _claims(name: str, found: Iterable[Ratio]) -> Table:
+def _claims(name: str, found: Sequence[Ratio]) -> Table:
+    run = [one for one in found if one.verdict != NOT_RUN]
     rows = tuple(
         (
             one.claim.text, one.claim.where, f"{one.claim.better} : {one.claim.worse}",
             one.claim.key.replace("_", " "), str(one.count), number(one.claim.ratio), span(one.ours),
             number(one.size), one.verdict,
         )
-        for one in found
+        for one in run
     )  # fmt: skip
     head = ("claim", "outages", "method", "label", "n", "paper", "ours", "ours/paper", "as in the paper")
-    words = "; ".join(f"{word}: {what}" for word, what in VERDICTS.items())
+    words = "; ".join(f"{word}: {what}" for word, what in VERDICTS.items() if word != NOT_RUN)
+    left = len(found) - len(run)
+    more = f" {left} more are of methods that were not run." if left else ""
     note = (
         "Ratio of two methods' errors in the same windows: as published, and the geometric mean of ours with "
-        f"its 95 % interval. Order as in the paper: {words}."
+        f"its 95 % interval. Order as in the paper: {words}.{more}"
     )
     return Table(f"{name}: ratios and verdicts", head, rows, note)
 

@@ -169,7 +169,7 @@ PAPER: Final = Paper(
             tables=(TABLE_8, TABLE_9, TABLE_10),
             claims=(
                 Claim(
-                    "15: ASFP to IELM-IFF, -21.18 %",
+                    "Figure 15: ASFP to IELM-IFF, -21.18 %",
                     "100 s",
                     "IELM-IFF",
                     "ASFP",
@@ -177,7 +177,7 @@ PAPER: Final = Paper(
                     1.0 - 0.2118,
                 ),
                 Claim(
-                    "15: ASFP to IELM-IFF, -14.73 %",
+                    "Figure 15: ASFP to IELM-IFF, -14.73 %",
                     "100 s",
                     "IELM-IFF",
                     "ASFP",
