@@ -29,7 +29,8 @@ from gapless.sensors import Grade
 from gapless.sensors import grade as named_grade
 from gapless.simulate import Receiver, simulate
 from gapless.systems.build import settings
-from gapless.systems.recipe import Clock, Mounting, System, load
+from gapless.systems.library import load
+from gapless.systems.recipe import Clock, Mounting, System
 
 Array = np.ndarray
 PARTS = {"position": slice(0, 3), "velocity": slice(3, 6), "attitude": slice(6, 9)}

@@ -58,7 +58,7 @@ def isolated(folder: Path, count: int = 30) -> None:
     from gapless.scenarios import plan
     from gapless.systems.forks import piece, run_with_forks
     from gapless.systems.fuse import decide_before, fuse, withhold_from
-    from gapless.systems.recipe import load
+    from gapless.systems.library import load
 
     log, system = io.read(folder), load("constraints")
     texts = [f"every=180,length=60,first=240,shift={shift}" for shift in (0, 60, 120)]

@@ -133,7 +133,9 @@ def with_defaults(page: str) -> str:
     table = recipe = msgspec.to_builtins(System())
     for line in page.splitlines(keepends=True):
         if line.startswith("## "):
-            table = recipe.get(line[3:].strip().strip("[]"), recipe)
+            table = recipe
+            for part in line[3:].strip().strip("[]").split("."):
+                table = table.get(part, recipe)
         key = _ROW.match(line)
         if key is not None:
             shown = msgspec.json.format(msgspec.json.encode(table[key[1]]), indent=0).decode()

@@ -68,8 +68,8 @@ if TYPE_CHECKING:
     from gapless.sweeps.conduct import sweep
     from gapless.sweeps.store import read as read_sweep
     from gapless.systems.fuse import fuse
+    from gapless.systems.library import load as load_system
     from gapless.systems.recipe import System
-    from gapless.systems.recipe import load as load_system
     from gapless.systems.smooth import smooth
     from gapless.systems.vehicle import vehicle_attitude
 

@@ -27,7 +27,7 @@ FAST = {"reassoc", "contract", "arcp", "nsz"}
 
 
 _FILES = ("_numba", "units", "earth", "attitude", "recording", "events")
-_ROOMS = (*(f"{name}.py" for name in _FILES), "filters", "inertial", "sensors", "measurements")
+_ROOMS = (*(f"{name}.py" for name in _FILES), "filters", "inertial", "sensors", "measurements", "denoise")
 """Modules that hold kernels, and all that those may import (the floors keep it so)."""
 _KEPT = 30.0 * 86400.0
 """Kernels of versions that last compiled longer ago are thrown away [s]."""
@@ -72,6 +72,20 @@ def kernel(function: F) -> F:
         The compiled function; `.py_func` is the plain Python one.
     """
     return cast(F, numba.njit(cache=True, fastmath=FAST, error_model="numpy")(function))
+
+
+def long_kernel(function: F) -> F:
+    """Like `kernel`, for work of milliseconds: meanwhile other threads of Python run.
+
+    Parameters
+    ----------
+    function : callable
+
+    Returns
+    -------
+    callable
+    """
+    return cast(F, numba.njit(cache=True, fastmath=FAST, error_model="numpy", nogil=True)(function))
 
 
 def inline(function: F) -> F:

@@ -15,6 +15,10 @@ class ConfigError(GaplessError):
     """A configuration key is unknown or a value is out of range."""
 
 
+class ModelError(GaplessError):
+    """A learner cannot be saved, or a saved one is damaged, foreign or does not fit."""
+
+
 class AlignmentError(GaplessError):
     """The data never allowed an initial position, velocity or attitude."""
 

@@ -9,12 +9,12 @@ import numpy as np
 
 from gapless import earth
 from gapless.alignment.coarse import Start
+from gapless.assimilate import assimilate
+from gapless.bridges.base import Bridge
 from gapless.events import EPS, Event, ImuBlock, Motion, Reading
 from gapless.filters.consider import Wander
-from gapless.filters.update import assess, correct
 from gapless.inertial import propagate as at
 from gapless.inertial.belief import Belief, inject
-from gapless.inertial.layout import ROW
 from gapless.inertial.pieces import GAP, pieces, without_holes
 from gapless.journal import Journal
 from gapless.measurements.base import Observation
@@ -51,8 +51,11 @@ class Navigator:
         self.journal = Journal(settings.layout, settings.misalignment)
         belief = Belief(settings.layout, settings.open_loop, settings.trail)
         constraints = {name: c.copy() for name, c in settings.constraints.items()}
+        bridges = [bridge.copy() for bridge in settings.bridges]
         wander = Wander(settings.wander_time)
-        self._state = State(belief, settings.gate.copy(), constraints, settings.aligner.copy(), wander)
+        rules = {kind: rule.copy() for kind, rule in settings.adaptation.items()}
+        aligner = settings.aligner.copy()
+        self._state = State(belief, rules, constraints, bridges, aligner, wander, settings.noise)
         self._past = Past(settings.lateness)
         self.dropped = 0
         self.tape: Tape | None = None
@@ -61,6 +64,11 @@ class Navigator:
     def belief(self) -> Belief:
         """The present belief (not a copy)."""
         return self._state.belief
+
+    @property
+    def bridges(self) -> list[Bridge]:
+        """The bridges as they are now (not copies)."""
+        return self._state.bridges
 
     @property
     def time(self) -> float:
@@ -170,6 +178,8 @@ class Navigator:
         observation = self.settings.sensors[reading.channel].observe(state.belief, reading)
         if self._update(reading.channel, reading.time, observation):
             state.heard[reading.channel] = reading.time
+            for bridge in state.bridges:
+                bridge.hear(state.belief, reading)
 
     # --- samples --------------------------------------------------------------------------------
 
@@ -196,11 +206,14 @@ class Navigator:
             state.clock = float(block.time[last - 1])
             return
         b, often = state.belief, s.row < s.tick
+        if state.fade > 1.0:  # the epoch is over
+            b.fade(state.fade, s.ceiling)
+            state.fade = 1.0
         while first < last:
             end = self._next_row(block, first, last) if often else last
             flush = due and end == last
             first = at.propagate(
-                b.x, b.memory, s.layout.width, b.p, b.scratch, b.error, s.layout.offsets, s.noise,
+                b.x, b.memory, s.layout.width, b.p, b.scratch, b.error, s.layout.offsets, state.noise,
                 block.time, block.dt, block.dtheta, block.dvel, first, end, s.period, s.tick, flush,
             )  # fmt: skip
             state.clock = float(block.time[first - 1])
@@ -231,6 +244,8 @@ class Navigator:
         state.aligner = self.settings.aligner.copy()
         if state.aligned:
             state.belief.lose_track(begin, begin - state.clock)
+            for bridge in state.bridges:
+                bridge.lost()
             if self.tape is not None:
                 self.tape.forgot(everything=False)
         state.clock = begin
@@ -246,6 +261,10 @@ class Navigator:
                 continue
             if self._update(name, motion.time, observation):
                 state.heard[name] = motion.time
+        for bridge in state.bridges:
+            for channel, said in bridge.tick(state.belief, motion):
+                if self._update(channel, motion.time, said):
+                    state.heard["bridge"] = motion.time
         self._row()
 
     def _row(self) -> None:
@@ -262,6 +281,8 @@ class Navigator:
         heard, now = self._state.heard, self._state.clock
         if now - max(heard.get("position", -math.inf), heard.get("velocity", -math.inf)) < 1.6:
             return "gnss"
+        if now - heard.get("bridge", -math.inf) < 1.6:
+            return "bridge"
         if any(now - heard.get(name, -math.inf) < 1.0 for name in (*self._state.constraints, "odometer")):
             return "constraints"
         return "ins"
@@ -297,31 +318,4 @@ class Navigator:
         self.journal.align(state.clock, start.evidence)
 
     def _update(self, channel: str, time: float, o: Observation) -> bool:
-        """Gate, adapt, correct; False where the observation was rejected."""
-        state, n = self._state, self.settings.layout.n
-        b = state.belief
-        z = o.z
-        nis, s, hp = assess(b.p, ROW, n, z, o.H, o.R)
-        verdict = state.gate.judge(channel, time, z, nis, o.R)
-        self.journal.innovation(channel, time, z, s, nis, verdict.factor)
-        if verdict.widen:
-            b.widen(o.H, z)
-        if math.isinf(verdict.factor):
-            return False
-        r = o.R
-        if verdict.widen:
-            _, s, hp = assess(b.p, ROW, n, z, o.H, r)
-        elif verdict.factor != 1.0:
-            r = o.R * verdict.factor
-            s = s + (r - o.R)
-        if self.tape is not None:
-            self.tape.corrected(o.H, hp, s, z)
-        dx = correct(b.p, ROW, n, z, o.H, r, s, hp, 1.0)
-        if o.slow is not None:
-            state.wander.hear(time, b.p, ROW, r, o.slow)
-        if b.error.size:
-            b.error[:n] += dx
-        else:
-            inject(b.x, dx)
-            b.trail.shift(dx[3:6])
-        return True
+        return assimilate(self._state, self.settings, channel, time, o, self.journal, self.tape)

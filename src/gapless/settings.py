@@ -2,11 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import math
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
 
 from gapless.alignment.coarse import Aligner
+from gapless.bridges.base import Bridge
+from gapless.filters.adaptation.base import Adaptation
 from gapless.filters.adaptation.gate import Gate
+from gapless.filters.adaptation.registry import KINDS
 from gapless.inertial.layout import Layout
 from gapless.measurements.base import Constraint, Sensor
 from gapless.recording import Array
@@ -30,8 +37,10 @@ class Settings:
         By channel.
     constraints : mapping of str to Constraint
         By channel; copied, never changed.
-    gate : Gate
-        Copied.
+    bridges : sequence of Bridge
+        Copied, never changed.
+    adaptation : mapping of str to Adaptation
+        By kind of observation; copied.
     aligner : Aligner
         Copied.
     tick : float
@@ -58,7 +67,8 @@ class Settings:
     initial: Mapping[str, Array]
     sensors: Mapping[str, Sensor]
     constraints: Mapping[str, Constraint]
-    gate: Gate = field(default_factory=Gate)
+    bridges: Sequence[Bridge] = ()
+    adaptation: Mapping[str, Adaptation] = field(default_factory=lambda: {kind: Gate() for kind in KINDS})
     aligner: Aligner = field(default_factory=Aligner)
     tick: float = 0.1
     period: float = 0.05
@@ -68,3 +78,14 @@ class Settings:
     wander_time: float = 60.0
     open_loop: bool = False
     trail: float = 0.0
+
+    @cached_property
+    def ceiling(self) -> Array:
+        """Variance beyond which no fading forgets, shape (n,): that of a state of which nothing is known."""
+        found = np.full(self.layout.n, np.inf)
+        for name, block in self.layout.blocks.items():
+            if name == "attitude":
+                found[block] = math.pi**2 / 3.0
+            elif name not in ("position", "velocity"):
+                found[block] = np.square(self.initial_sd.get(name, 0.0))
+        return found

@@ -53,7 +53,8 @@ class Innovations(Columns):
     nis : ndarray, shape (k,)
         Normalised innovation squared z' S^-1 z, before any adaptation.
     factor : ndarray, shape (k,)
-        By how much R was inflated: 1 as stated, inf where the observation was rejected.
+        By how much R was inflated (mean over its variances): 1 as stated, inf where the
+        observation was rejected.
     """
 
     z: Array

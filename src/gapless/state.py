@@ -7,11 +7,13 @@ import math
 from dataclasses import dataclass, field
 
 from gapless.alignment.coarse import Aligner
+from gapless.bridges.base import Bridge
 from gapless.events import Event, ImuBlock, Reading
-from gapless.filters.adaptation.gate import Gate
+from gapless.filters.adaptation.base import Adaptation
 from gapless.filters.consider import Wander
 from gapless.inertial.belief import Belief
 from gapless.measurements.base import Constraint
+from gapless.recording import Array
 
 
 @dataclass
@@ -21,12 +23,16 @@ class State:
     Parameters
     ----------
     belief : Belief
-    gate : Gate
+    adaptation : dict of str to Adaptation
+        By kind of observation.
     constraints : dict of str to Constraint
+    bridges : list of Bridge
     aligner : Aligner or None
         None once there is a heading that is trusted.
     wander : Wander
         What the fixes' common error does to the position.
+    noise : ndarray, shape (7,)
+        Process noise, as an adaptation left it; never changed in place.
     pending : list of Reading
         Readings that hold for a time still to come, in its order.
     heard : dict of str to float
@@ -37,18 +43,23 @@ class State:
         When the next journal row is due [s].
     aligned : bool
         Whether there ever was an attitude.
+    fade : float
+        Factor on the covariance that is due once time goes on.
     """
 
     belief: Belief
-    gate: Gate
+    adaptation: dict[str, Adaptation]
     constraints: dict[str, Constraint]
+    bridges: list[Bridge]
     aligner: Aligner | None
     wander: Wander
+    noise: Array
     pending: list[Reading] = field(default_factory=list)
     heard: dict[str, float] = field(default_factory=dict)
     clock: float = -math.inf
     next_row: float = -math.inf
     aligned: bool = False
+    fade: float = 1.0
 
     def copy(self) -> State:
         """An independent copy.
@@ -59,15 +70,18 @@ class State:
         """
         return State(
             self.belief.copy(),
-            self.gate.copy(),
+            {kind: rule.copy() for kind, rule in self.adaptation.items()},
             {name: c.copy() for name, c in self.constraints.items()},
+            [bridge.copy() for bridge in self.bridges],
             None if self.aligner is None else self.aligner.copy(),
             self.wander.copy(),
+            self.noise,
             list(self.pending),
             dict(self.heard),
             self.clock,
             self.next_row,
             self.aligned,
+            self.fade,
         )
 
     def expect(self, readings: tuple[Reading, ...]) -> None:

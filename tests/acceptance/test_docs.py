@@ -16,7 +16,8 @@ from gapless.io.other_logs import ODOMETER_COLUMNS, REFERENCE_COLUMNS
 from gapless.io.readers.folder import KEYS
 from gapless.io.satellite_log import GNSS_COLUMNS
 from gapless.sensors import grade_names
-from gapless.systems.recipe import System, parse
+from gapless.systems.library import parse
+from gapless.systems.recipe import System
 
 ROOT = Path(__file__).parents[2]
 DOCS = ROOT / "docs"
@@ -62,6 +63,14 @@ def test_commands_in_the_pages_have_options_that_exist():
             assert set(re.findall(r"--[a-z-]+", rest)) <= known[verb] | {"--help"}, (page.name, verb, rest)
 
 
+def keys_of(table, name=""):
+    """Each table's name with dots, and its keys."""
+    yield name or "Top", {key for key, value in table.items() if not isinstance(value, dict)}
+    for key, value in table.items():
+        if isinstance(value, dict):
+            yield from keys_of(value, f"{name}.{key}" if name else key)
+
+
 def test_configuration_page_lists_every_key_with_its_default(refresh):
     page = (DOCS / "configuration.md").read_text("utf-8")
     listed = {"Top": set()}
@@ -70,9 +79,7 @@ def test_configuration_page_lists_every_key_with_its_default(refresh):
             keys = listed.setdefault(line[3:].strip("[]"), set())
         elif found := re.match(r"\| `(\w+)` \|", line):
             keys.add(found[1])
-    recipe = msgspec.to_builtins(System())
-    there = {"Top": {key for key, value in recipe.items() if not isinstance(value, dict)}}
-    assert listed == there | {key: set(value) for key, value in recipe.items() if isinstance(value, dict)}
+    assert listed == dict(keys_of(msgspec.to_builtins(System())))
     assert page == refresh.with_defaults(page)  # else: make docs
 
 

@@ -21,7 +21,8 @@ from gapless.simulate import spikes
 from gapless.systems.decide import decide
 from gapless.systems.forks import piece, run_with_forks
 from gapless.systems.fuse import decide_before, fuse, withhold_from
-from gapless.systems.recipe import System, load
+from gapless.systems.library import load
+from gapless.systems.recipe import System
 from gapless.units import DEG
 
 DATA = Path(os.environ.get("GAPLESS_RECORDINGS", Path(__file__).parents[3] / "shared" / "data"))

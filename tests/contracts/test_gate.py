@@ -9,6 +9,7 @@ from folding import CAR, fold, prepared, rows
 from gapless import earth
 from gapless.events import ImuBlock
 from gapless.feed import events
+from gapless.filters.adaptation.base import Innovation
 from gapless.filters.adaptation.gate import SOFT, Gate
 from gapless.motion import displace
 from gapless.navigator import Navigator
@@ -107,6 +108,11 @@ def test_a_filter_that_is_wrong_and_sure_gives_in(settled, channel, displaced, s
     assert apart(lost, after(navigator, log, START + soon)) < 10.0
 
 
+def told(channel, time, z, nis, m):
+    """An innovation of that surprise, with R = 1."""
+    return Innovation(channel, time, z, 2.0 * np.eye(m), np.eye(m), nis)
+
+
 def test_r_is_never_made_smaller():
     rng, gate = np.random.default_rng(0), Gate()
     sizes = {"position": 3, "velocity": 3, "odometer": 1, "nonholonomic": 2, "zero_velocity": 6}
@@ -114,21 +120,21 @@ def test_r_is_never_made_smaller():
         nis = 10.0 ** rng.uniform(-3.0, 9.0)
         channel = str(rng.choice(list(sizes)))
         m = sizes[channel]
-        verdict = gate.judge(channel, 0.1 * k, rng.normal(0.0, 10.0, m), nis, np.eye(m))
-        assert verdict.factor >= 1.0
-        assert verdict.factor == 1.0 or nis > SOFT[m]
+        verdict = gate.judge(told(channel, 0.1 * k, rng.normal(0.0, 10.0, m), nis, m))
+        assert verdict.r is None or (verdict.r >= np.eye(m)).all()
+        assert (verdict.r is not None and (verdict.r == np.eye(m)).all()) or nis > SOFT[m]
 
 
 def test_a_poisoned_observation_is_refused():
-    assert Gate().judge("position", 0.0, np.full(3, np.nan), np.nan, np.eye(3)).factor == np.inf
+    assert Gate().judge(told("position", 0.0, np.full(3, np.nan), np.nan, 3)).r is None
 
 
 def test_a_copy_remembers_and_forgets_alone():
     gate = Gate()
-    gate.judge("position", 0.0, np.zeros(3), 1.0, np.eye(3))
+    gate.judge(told("position", 0.0, np.zeros(3), 1.0, 3))
     twin = gate.copy()
     for t in range(1, 5):
-        twin.judge("position", float(t), np.full(3, 50.0), 1e4, np.eye(3))
+        twin.judge(told("position", float(t), np.full(3, 50.0), 1e4, 3))
     assert gate.runs == {}
     assert twin.runs["position"].length == 4
 

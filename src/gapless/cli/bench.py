@@ -155,12 +155,14 @@ def _sources(
 
 
 def _methods(systems: str) -> Sequence[Method]:
+    from gapless.cli.options import scipy_again
     from gapless.laboratory.recipes import Recipe, smoothed
-    from gapless.systems.recipe import load
+    from gapless.systems.adjust import named
 
+    scipy_again()
     names = [name.strip() for name in systems.split(",")]
     return tuple(
-        smoothed(load("constraints")) if name == "smoothed" else Recipe(load(name)) for name in names
+        smoothed(named("constraints")) if name == "smoothed" else Recipe(named(name)) for name in names
     )
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
@@ -31,7 +32,9 @@ _OUTAGE = (
 )  # fmt: skip
 _RECIPE = (
     click.option(
-        "--system", metavar="NAME", help="Built-in recipe: constraints (the one used) or ins."
+        "--system", metavar="NAME",
+        help="Built-in recipe (`gapless systems` lists them; constraints is the one used), perhaps with "
+        "-PART or +constraints behind it: wang2018-bridge.",
     ),
     click.option(
         "--config", type=click.Path(path_type=Path), metavar="FILE",
@@ -40,7 +43,7 @@ _RECIPE = (
     click.option(
         "--without", multiple=True, metavar="NAME",
         help="Leave out a constraint (zero_velocity, nonholonomic) or a sensor "
-        "(position, velocity, odometer). Repeatable.",
+        "(position, velocity, odometer), the bridge or denoise. Repeatable.",
     ),
     click.option(
         "--clock", multiple=True, metavar="SENSOR=SECONDS",
@@ -147,19 +150,25 @@ def job(
         from gapless.navigator import load_kernels  # what navigates takes as long to load
 
         load_kernels()
+        scipy_again()
         found = reading.result()
     return Job(found, recipe, plan([*outage, *outages], found), causal)
 
 
+def scipy_again() -> None:
+    """Let SciPy be found from now on: numba has looked for it, and scikit-learn needs it."""
+    if "scipy" in sys.modules and sys.modules["scipy"] is None:
+        del sys.modules["scipy"]
+
+
 def _system(name: str | None, config: Path | None, without: Sequence[str], clock: Sequence[str]) -> System:
     from gapless.errors import ConfigError
-    from gapless.systems.adjust import with_clock
+    from gapless.systems.adjust import named, with_clock
     from gapless.systems.adjust import without as left_out
-    from gapless.systems.recipe import load
 
     if name is not None and config is not None:
         raise ConfigError("--system and --config both name a recipe; give one of them")
-    recipe = load(config if config is not None else name or "constraints")
+    recipe = named(str(config) if config is not None else name or "constraints")
     recipe = left_out(recipe, *without)
     for text in clock:
         channel, _, value = text.partition("=")

@@ -4,7 +4,8 @@ from gapless.evaluation.ages import QUANTITIES, Ages, ages
 from gapless.evaluation.errors import Errors, solution_errors
 from gapless.evaluation.outages import OutageScore, score_outage, score_outages
 from gapless.evaluation.scores import Accuracy, Scores, outage_ages, pool_spread, score, score_pieces
-from gapless.evaluation.statistics import Consistency, Spread, chi_square_quantile, consistency, nees, spread
+from gapless.evaluation.statistics import Consistency, Spread, consistency, nees, spread
+from gapless.filters.quantile import chi_square_quantile
 from gapless.motion import first_motion
 
 __all__ = [

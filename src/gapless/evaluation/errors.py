@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 from gapless import earth
 from gapless.attitude import from_euler, to_matrix, wrap
 from gapless.evaluation.interpolation import interpolate
-from gapless.evaluation.statistics import chi_square_quantile, nees
+from gapless.evaluation.statistics import nees
+from gapless.filters.quantile import chi_square_quantile
 from gapless.motion import horizontal_velocity, motion, offset_ned
 from gapless.recording import Array, Columns, Gnss, Trajectory
 

@@ -206,6 +206,24 @@ class Belief:
         inject(x, self.error[: self.layout.n])
         return x
 
+    def fade(self, factor: float, ceiling: Array) -> None:
+        """Forget: P times a factor, but for variances at their ceiling.
+
+        P + (factor - 1) E P E, E diagonal between 0 and 1: what is added is a covariance, and a state
+        that no observation shows does not grow for ever.
+
+        Parameters
+        ----------
+        factor : float
+            At least 1.
+        ceiling : ndarray, shape (n,)
+            Variances that are not exceeded; states beyond stay as they are.
+        """
+        p = self.P
+        room = (ceiling / np.maximum(np.diag(p), 1e-300) - 1.0) / (factor - 1.0)
+        share = np.sqrt(np.clip(room, 0.0, 1.0))
+        p += (factor - 1.0) * (share[:, None] * p * share)
+
     def widen(self, h: Array, z: Array) -> None:
         """Admit an error as large as an innovation, where a channel looks directly at the state.
 

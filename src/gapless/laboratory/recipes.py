@@ -19,6 +19,7 @@ from gapless.systems.build import stamps
 from gapless.systems.decide import Decided
 from gapless.systems.forks import piece, run_with_forks
 from gapless.systems.fuse import DECISIONS_TAKEN_LATE, decide_before, fold, withhold_from
+from gapless.systems.prepare import prepared, sees_the_future
 from gapless.systems.recipe import System
 from gapless.systems.smooth import smooth
 
@@ -39,12 +40,16 @@ class Recipe:
     _known: dict[object, Decided] = field(default_factory=dict, compare=False, repr=False)
 
     _looked_at: set[tuple[int, bool]] = field(default_factory=set, compare=False, repr=False)
-    causal: bool = field(default=True, init=False)
 
     @property
     def name(self) -> str:
         """What tables call it."""
         return self.system.name
+
+    @property
+    def causal(self) -> bool:
+        """Whether no row knows of anything logged later: a recipe may denoise whole records."""
+        return not sees_the_future(self.system)
 
     @property
     def description(self) -> str:
@@ -63,6 +68,7 @@ class Recipe:
         -------
         Run
         """
+        recording = prepared(recording, self.system)
         decided = self._decided(recording, outages)
         solution, forks = run_with_forks(recording, self.system, outages, outages, decided, RATE)
         return Run(solution, outages, forks=forks)
@@ -79,6 +85,7 @@ class Recipe:
         -------
         Run
         """
+        recording = prepared(recording, self.system)
         decided = self._decided(recording, outages)
         whole, forks = run_with_forks(recording, self.system, (), outages, decided, RATE)
         pieces = tuple((f.outage, piece(f, recording, whole, self.system, decided)) for f in forks)
@@ -89,8 +96,8 @@ class Recipe:
     ) -> Peek | None:
         """See `Method`: from each fork on, sample by sample, with nothing there but what was logged before.
 
-        What comes before the forks, decisions among it, is looked at in one run from the start, cut at a
-        sample of the first outage; once for all plans with the same decisions.
+        What comes before the forks, decisions and denoising among it, is looked at in one run from the
+        start, cut at a sample of the first outage; once for all plans with the same decisions.
 
         Parameters
         ----------
@@ -103,7 +110,8 @@ class Recipe:
         -------
         Peek or None
         """
-        every, known = run.planned, dict(run.pieces)
+        every, known, raw = run.planned, dict(run.pieces), recording
+        recording = prepared(recording, self.system)
         decided = self._decided(recording, every)
         late, way = stamps(self.system, decided.offsets), (id(decided), bool(known))
         for fork in (f for f in run.forks if f.outage in outages):
@@ -121,7 +129,7 @@ class Recipe:
             if found is None and times and way not in self._looked_at:
                 self._looked_at.add(way)
                 again = partial(self._afresh, every)
-                found = from_the_start(again, recording, gone, rows, times[len(times) // 2], rng)
+                found = from_the_start(again, raw, gone, rows, times[len(times) // 2], rng)
             if found is not None:
                 return Peek(fork.outage, found - recording.start)
         return None
@@ -130,6 +138,7 @@ class Recipe:
         self, planned: tuple[Outage, ...], recording: Recording, through: tuple[Outage, ...]
     ) -> Solution:
         """Decide and navigate with nothing kept from earlier runs."""
+        recording = prepared(recording, self.system)
         decided = decide_before(withhold_from(recording, planned), self.system, planned)
         return run_with_forks(recording, self.system, through, (), decided, RATE)[0]
 

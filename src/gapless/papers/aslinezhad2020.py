@@ -31,12 +31,8 @@ DRIVE: Final = Drive(
 
 EKF: Final = Method("EKF", "ins", {"adaptation.gnss": []})
 GATE: Final = Method("EKF with our gate", "ins")
-RKF: Final = Method("RKF", "ins", {"adaptation.gnss": ["chi_square"]})
-FORWARD: Final = Method(
-    "RKF + feed-forward",
-    "aslinezhad2020",
-    {"bridge.kind": "position_error", "learner.name": "feed_forward"},
-)
+RKF: Final = Method("RKF", "aslinezhad2020", {"bridge.model": "none"})
+FORWARD: Final = Method("RKF + feed-forward", "aslinezhad2020-ff")
 NAR: Final = Method("RKF + NAR", "aslinezhad2020")
 METHODS: Final = (EKF, RKF, FORWARD, NAR, GATE, Method(OURS, "constraints"))
 _AXES: Final = ("north", "east", "down")

@@ -82,20 +82,15 @@ DRIVE: Final = Drive(
 )
 """MEMS at 50 Hz, u-blox LEA-6T (2.5 m CEP, 0.1 m/s), outages of 10, 30, 70 and 100 s."""
 
+_NO_BRIDGE: Final = {"bridge.model": "none"}
 KF: Final = Method("KF", "ins")
-CRTS: Final = Method("CRTS", "ins", {"filter.moments": "cubature"}, smoothed=True)
-VB_ACKS: Final = Method(
-    "VB-ACKS", "ins", {"filter.moments": "cubature", "adaptation.gnss": ["variational"]}, smoothed=True
-)
-VB_ACKF: Final = Method("VB-ACKF", "ins", {"filter.moments": "cubature", "adaptation.gnss": ["variational"]})
-SVR_KF: Final = Method(
-    "LS-SVR/KF",
-    "georges2015",
-    {"learner.name": "ls_svr", "filter.moments": "taylor", "adaptation.gnss": []},
-)
-SVR_VB: Final = Method("LS-SVR/VB-ACKS", "georges2015", {"learner.name": "ls_svr"})
+CRTS: Final = Method("CRTS", "georges2015", {**_NO_BRIDGE, "adaptation.gnss": ["gate"]}, smoothed=True)
+VB_ACKS: Final = Method("VB-ACKS", "georges2015", _NO_BRIDGE, smoothed=True)
+VB_ACKF: Final = Method("VB-ACKF", "georges2015", _NO_BRIDGE)
+SVR_KF: Final = Method("LS-SVR/KF", "georges2015-kf")
+SVR_VB: Final = Method("LS-SVR/VB-ACKS", "georges2015-ls-svr")
+RELM: Final = Method("RELM/VB-ACKS", "georges2015-relm")
 ERELM: Final = Method("ERELM/VB-ACKS", "georges2015")
-RELM: Final = Method("RELM/VB-ACKS", "georges2015", {"learner.name": "relm"})
 METHODS: Final = (
     KF, CRTS, VB_ACKS, VB_ACKF, SVR_KF, SVR_VB, RELM, ERELM, Method(OURS, "constraints"),
 )  # fmt: skip

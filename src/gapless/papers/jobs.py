@@ -21,7 +21,8 @@ from gapless.simulate import simulate, spikes
 from gapless.solution import Solution
 from gapless.systems.adjust import changed
 from gapless.systems.fuse import fuse
-from gapless.systems.recipe import System, load
+from gapless.systems.library import load
+from gapless.systems.recipe import System
 from gapless.systems.smooth import smooth
 
 

@@ -42,15 +42,18 @@ DRIVE: Final = Drive(
 )
 """Table 1 and section 5.1: Dalian, 2,400 s, 5 Hz GNSS of 2.5 m, three outages of 120 s."""
 
-INS: Final = Method("Pure INS", "ins", {"sensors": ["position"]})
-RBN: Final = Method("RBN", "liu2019", {"learner.name": "rbf"})
-ELM: Final = Method("ELM", "liu2019", {"learner.name": "elm"})
-RVFL: Final = Method("RVFL", "liu2019")
-RAW_ELM: Final = Method("ELM, raw", "liu2019", {"learner.name": "elm", "denoise": None})
-RAW_RVFL: Final = Method("RVFL, raw", "liu2019", {"denoise": None})
-WAVELET_RVFL: Final = Method("RVFL, wavelet", "liu2019", {"denoise.method": "wavelet"})
+ONLY: Final = {"sensors": ["position"]}
+"""Eq. 3: position is the only measurement."""
+RAW: Final = {**ONLY, "denoise.method": "none"}
+INS: Final = Method("Pure INS", "ins", ONLY)
+RBN: Final = Method("RBN", "liu2019-rbf", ONLY)
+ELM: Final = Method("ELM", "liu2019-elm", ONLY)
+RVFL: Final = Method("RVFL", "liu2019", ONLY)
+RAW_ELM: Final = Method("ELM, raw", "liu2019-elm", RAW)
+RAW_RVFL: Final = Method("RVFL, raw", "liu2019", RAW)
+WAVELET_RVFL: Final = Method("RVFL, wavelet", "liu2019-wavelet", ONLY)
 METHODS: Final = (
-    INS, RBN, ELM, RVFL, RAW_ELM, RAW_RVFL, WAVELET_RVFL, Method(OURS, "constraints"),
+    INS, RBN, ELM, RVFL, RAW_ELM, RAW_RVFL, WAVELET_RVFL, Method(OURS, "constraints", ONLY),
 )  # fmt: skip
 NORTH_EAST: Final = (Column("N", "position_north_rmse"), Column("E", "position_east_rmse"))
 

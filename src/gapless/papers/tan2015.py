@@ -121,10 +121,13 @@ def slow_curve(rng: Generator) -> tuple[Segment, ...]:
     )  # fmt: skip
 
 
-INS: Final = Method("INS-only", "ins", {"sensors": ["position"]})
-GA_SVR: Final = Method("INS/GA-SVR", "tan2015")
-FIXED: Final = Method("INS/GA-SVR, fixed R", "tan2015", {"adaptation.bridge": []})
-METHODS: Final = (INS, GA_SVR, FIXED, Method(OURS, "constraints"))
+ONLY: Final = {"sensors": ["position"]}
+"""Eq. 3: position is the only measurement."""
+INS: Final = Method("INS-only", "ins", ONLY)
+GA_SVR: Final = Method("INS/GA-SVR", "tan2015", ONLY)
+SVR: Final = Method("INS/SVR, not tuned", "tan2015-svr", ONLY)
+FIXED: Final = Method("INS/GA-SVR, fixed R", "tan2015-r", ONLY)
+METHODS: Final = (INS, GA_SVR, SVR, FIXED, Method(OURS, "constraints", ONLY))
 COLUMNS: Final = (
     Column("3D RMSE", "spatial_rmse"), Column("3D max", "spatial_max"),
     Column("vN", "velocity_north_rmse"), Column("vE", "velocity_east_rmse"),

@@ -46,13 +46,13 @@ DRIVE: Final = Drive(
 """Table 3: 16 segments, 784 s."""
 
 INS: Final = Method("Pure INS", "ins")
-FF: Final = Method("FF", "ins", {"adaptation.gnss": ["fading"]})
-IFF: Final = Method("IFF", "ins", {"adaptation.gnss": ["improved_fading"]})
-RBF_IFF: Final = Method("RBF-IFF", "wang2018", {"learner.name": "rbf"})
-ELM_IFF: Final = Method("ELM-IFF", "wang2018", {"learner.name": "elm"})
+FF: Final = Method("FF", "wang2018-ff")
+IFF: Final = Method("IFF", "wang2018", {"bridge.model": "none"})
+RBF_IFF: Final = Method("RBF-IFF", "wang2018-rbf")
+ELM_IFF: Final = Method("ELM-IFF", "wang2018-elm")
 IELM_IFF: Final = Method("IELM-IFF", "wang2018")
-ASFP: Final = Method("ASFP", "wang2018", {"bridge.kind": "asfp", "learner.name": "rbf"})
-STATE: Final = Method("O_INS-X_k", "wang2018", {"bridge.kind": "state_vector"})
+ASFP: Final = Method("ASFP", "wang2018-asfp")
+STATE: Final = Method("O_INS-X_k", "wang2018-xk")
 METHODS: Final = (
     INS, FF, IFF, RBF_IFF, ELM_IFF, ASFP, STATE, IELM_IFF, Method(OURS, "constraints"),
 )  # fmt: skip

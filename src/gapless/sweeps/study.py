@@ -20,8 +20,10 @@ from gapless.sensors import grade as named_grade
 from gapless.simulate import profile as named_profile
 from gapless.sweeps.run import Run
 from gapless.sweeps.sources import Logged, Simulated, logged
-from gapless.systems.adjust import changed
-from gapless.systems.recipe import Positive, System, load, loads, typed
+from gapless.systems.adjust import changed, named
+from gapless.systems.library import loads, typed
+from gapless.systems.recipe import System
+from gapless.systems.values import Positive
 
 Name = Annotated[str, Meta(pattern=r"^[A-Za-z0-9][A-Za-z0-9._-]*$")]
 Seed = Annotated[int, Meta(ge=0)]
@@ -201,9 +203,9 @@ def _systems(name: str, variants: Iterable[dict[str, Any]], folder: Path, where:
     smooth = name == SMOOTHED
     with _at(where):
         if smooth:
-            system = replace(load("constraints"), name=SMOOTHED)
+            system = replace(named("constraints"), name=SMOOTHED)
         else:
-            system = load(folder / name if name.endswith(".toml") else name)
+            system = named(str(folder / name) if name.endswith(".toml") else name)
     found = []
     for override in variants:
         tables = msgspec.to_builtins(changed(system, override, f"{where} with override"))

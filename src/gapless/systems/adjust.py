@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, get_args
+from typing import Any, Final, get_args
 
 import msgspec
 from msgspec.structs import replace
@@ -11,7 +11,64 @@ from msgspec.structs import replace
 from gapless.errors import ConfigError
 from gapless.recording import Recording
 from gapless.sensors import grade_names
-from gapless.systems.recipe import Clock, Offset, System, checked
+from gapless.systems.learning import BridgeUse
+from gapless.systems.library import checked, load, names
+from gapless.systems.prepare import DenoiseUse
+from gapless.systems.recipe import Clock, System
+from gapless.systems.values import Offset
+
+PARTS: Final = {"bridge": BridgeUse(), "denoise": DenoiseUse()}
+"""Parts that a system can do without, and what is left then."""
+
+
+def has(system: System, part: str) -> bool:
+    """Whether a system has a bridge, or denoises.
+
+    Parameters
+    ----------
+    system : System
+    part : str
+        "bridge" or "denoise".
+
+    Returns
+    -------
+    bool
+    """
+    return system.bridge.model != "none" if part == "bridge" else system.denoise.method != "none"
+
+
+def named(text: str) -> System:
+    """A system by name, with parts taken out or the constraints put in.
+
+    Parameters
+    ----------
+    text : str
+        A built-in name or a TOML file; then any of "-NAME", as for `without`, and "+constraints":
+        "wang2018-bridge" is its filter alone, "wang2018+constraints" what it does for a filter that
+        knows what every car obeys.
+
+    Returns
+    -------
+    System
+
+    Raises
+    ------
+    ConfigError
+        If there is no such recipe or part.
+    """
+    out: list[str] = []
+    base = text.removesuffix("+constraints")
+    while base not in names():
+        shorter, dash, last = base.rpartition("-")
+        if not dash or last not in (*_choices("constraints"), *_choices("sensors"), *PARTS):
+            break
+        base, out = shorter, [last, *out]
+    system = load(base)
+    for name in out:
+        system = replace(without(system, name), name=f"{system.name}-{name}")
+    if text.endswith("+constraints"):
+        system = replace(system, constraints=System().constraints, name=f"{system.name}+constraints")
+    return system
 
 
 def without(system: System, *names: str) -> System:
@@ -21,8 +78,8 @@ def without(system: System, *names: str) -> System:
     ----------
     system : System
     *names : str
-        "zero_velocity", "nonholonomic", "position", "velocity" or "odometer"; one that the system
-        does not use anyway changes nothing.
+        "zero_velocity", "nonholonomic", "position", "velocity", "odometer", "bridge" or "denoise"; one
+        that the system does not use anyway changes nothing.
 
     Returns
     -------
@@ -34,15 +91,18 @@ def without(system: System, *names: str) -> System:
     ConfigError
         If a name is none of these.
     """
-    known = (*_choices("constraints"), *_choices("sensors"))
+    known = (*_choices("constraints"), *_choices("sensors"), *PARTS)
     for name in names:
         if name not in known:
             raise ConfigError(f"there is no {name!r} to do without; choose from {', '.join(known)}")
-    out = [name for name in dict.fromkeys(names) if name in (*system.constraints, *system.sensors)]
+    used = (*system.constraints, *system.sensors, *(name for name in PARTS if has(system, name)))
+    out = [name for name in dict.fromkeys(names) if name in used]
     if not out:
         return system
+    gone = {name: PARTS[name] for name in out if name in PARTS}
     return replace(
         system,
+        **gone,
         name=f"{system.name} without {', '.join(out)}",
         constraints=tuple(name for name in system.constraints if name not in out),
         sensors=tuple(name for name in system.sensors if name not in out),

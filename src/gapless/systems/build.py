@@ -8,6 +8,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from gapless.alignment.coarse import Aligner
+from gapless.filters.adaptation.registry import KINDS, RULES, chain
 from gapless.inertial.layout import Layout
 from gapless.measurements.base import Constraint, Sensor
 from gapless.measurements.gnss import Position, Velocity
@@ -17,6 +18,7 @@ from gapless.measurements.stillness import Stillness
 from gapless.navigator import Settings
 from gapless.recording import Array, Recording
 from gapless.sensors import grade
+from gapless.systems.learning import bridges
 from gapless.systems.recipe import Imu, System
 from gapless.units import DEG
 
@@ -55,6 +57,9 @@ def settings(
     imu = budget(system.imu, gyro_density)
     names = states(system, recording)
     angles, angle_sd = mounting
+    sensors, lateness = _sensors(system, recording, angles), _lateness(stamps(system, offsets))
+    rules = system.adaptation
+    tables = {name: getattr(rules, name) for name in RULES}
     return Settings(
         layout=Layout(names),
         noise=imu["noise"],
@@ -71,13 +76,15 @@ def settings(
             "odometer_scale": system.odometer.scale_sd,
         },
         initial=_initial(names, angles, system, recording),
-        sensors=_sensors(system, recording, angles),
+        sensors=sensors,
         constraints=_constraints(system, angles),
+        bridges=bridges(system.bridge, system.learner, sensors, lateness),
+        adaptation={kind: chain(kind, getattr(rules, kind), tables) for kind in KINDS},
         aligner=Aligner(float(angles[1]), system.alignment.min_speed, system.alignment.window),
         tick=system.filter.tick,
         period=system.filter.covariance_period,
         row=row,
-        lateness=_lateness(stamps(system, offsets)),
+        lateness=lateness,
         trail=1.5 * system.gnss.velocity_averaging + 0.2 if system.gnss.velocity_averaging else 0.0,
         misalignment=float(imu["misalignment"]),
         wander_time=system.gnss.wander_time,

@@ -16,7 +16,8 @@ from gapless.recording import Array, Recording, Trajectory
 from gapless.sensors.vibration import gyro_density
 from gapless.solution import Decision
 from gapless.systems.build import budget, lever_arm, settings, stamps
-from gapless.systems.recipe import System
+from gapless.systems.learning import BridgeUse
+from gapless.systems.recipe import Adaptation, System
 from gapless.units import DEG
 
 CHANNELS = ("position", "velocity", "odometer")
@@ -130,7 +131,14 @@ class _FirstPass:
         gnss = replace(use, jitter=jitter, position_floor=max(floor, use.position_floor))
         sensors = tuple(s for s in self.system.sensors if s != "odometer")  # it would vouch for itself
         coarse = replace(self.system.filter, tick=0.2)
-        system = replace(self.system, gnss=gnss, filter=coarse, sensors=sensors)
+        system = replace(
+            self.system,
+            gnss=gnss,
+            filter=coarse,
+            sensors=sensors,
+            adaptation=Adaptation(),
+            bridge=BridgeUse(),
+        )
         navigator = Navigator(
             settings(system, self.past, self.offsets, _given_mounting(system), self.density, coarse.tick)
         )

@@ -18,6 +18,7 @@ from gapless.solution import Decision, Solution
 from gapless.systems.adjust import graded
 from gapless.systems.build import settings, stamps
 from gapless.systems.decide import Decided, decide, static_decisions
+from gapless.systems.prepare import denoise_decisions, prepared
 from gapless.systems.recipe import System
 
 Progress = Callable[[float], None]
@@ -64,7 +65,7 @@ def fuse(
         If the vehicle never moved fast enough for a heading.
     """
     system = graded(System() if system is None else system, recording)
-    outages = tuple(outages)
+    recording, outages = prepared(recording, system), tuple(outages)
     open_sky = withhold_from(recording, outages)
     if causal:
         navigator, decided = _on_the_way(open_sky, system, rate, progress)
@@ -228,10 +229,12 @@ def collect(
         states_sd=sds,
         innovations=journal.innovations(),
         decisions=(
+            *denoise_decisions(system),
             *static_decisions(recording, system),
             *decided.decisions,
             *_alignments(journal, recording.start),
             *_stops(journal),
+            *(d for bridge in navigator.bridges for d in bridge.decisions(recording.start)),
         ),
         outages=tuple((o.start, o.until) for o in outages),
         start=recording.start,

@@ -1,30 +1,19 @@
-"""The recipe of a system: what a TOML file may say, with its defaults and its checks.
+"""The recipe of a system: what a TOML file may say, and its defaults.
 
 Angles are in degrees and everything else in SI units, as a user writes them.
 """
 
 from __future__ import annotations
 
-import re
-import tomllib
-from collections.abc import Mapping
-from importlib.resources import files
-from pathlib import Path
-from typing import Annotated, Any, Literal, TypeVar, get_args
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import msgspec
 from msgspec import Meta, Struct
-from msgspec.structs import fields
 
-from gapless.errors import ConfigError
-from gapless.inertial.layout import EXTRAS
-
-T = TypeVar("T", bound=Struct)
-Positive = Annotated[float, Meta(gt=0.0)]
-NonNegative = Annotated[float, Meta(ge=0.0)]
-Angle = Annotated[float, Meta(ge=-180.0, le=360.0)]
-Auto = Literal["auto"]
-Offset = Annotated[float, Meta(ge=-10.0, le=10.0)] | Auto
+from gapless.filters.adaptation.registry import RULES
+from gapless.systems.learning import BridgeUse, LearnerUse
+from gapless.systems.prepare import DenoiseUse
+from gapless.systems.values import Angle, Auto, NonNegative, Offset, Positive
 
 
 class Imu(Struct, forbid_unknown_fields=True, frozen=True):
@@ -55,6 +44,7 @@ class Filter(Struct, forbid_unknown_fields=True, frozen=True):
     """States beyond the fifteen, the correction's way, and how often things are done."""
 
     states: tuple[str, ...] = ("gyro_scale",)
+    moments: Literal["taylor", "cubature"] = "taylor"
     correction: Literal["feedback", "feedforward"] = "feedback"
     covariance_period: Annotated[float, Meta(ge=0.0, le=0.1)] = 0.05
     tick: Annotated[float, Meta(ge=0.05, le=1.0)] = 0.1
@@ -78,6 +68,20 @@ class GnssUse(Struct, forbid_unknown_fields=True, frozen=True):
     velocity_averaging: NonNegative = 0.0
     jitter: NonNegative = 0.02
     lever_arm: tuple[float, float, float] | None = None
+
+
+if TYPE_CHECKING:
+    _Rules = Struct
+else:  # a table for each rule, so that a rule needs no line here
+    _Rules = msgspec.defstruct("_Rules", [(name, rule.Table, rule.Table()) for name, rule in RULES.items()])
+
+
+class Adaptation(_Rules, forbid_unknown_fields=True, frozen=True):
+    """Rules that bend R or P, in order, by kind of observation; then a table for each rule."""
+
+    gnss: tuple[str, ...] = ("gate",)
+    bridge: tuple[str, ...] = ("gate",)
+    constraints: tuple[str, ...] = ("gate",)
 
 
 class Nonholonomic(Struct, forbid_unknown_fields=True, frozen=True):
@@ -144,6 +148,7 @@ class System(Struct, forbid_unknown_fields=True, frozen=True):
     constraints: tuple[Literal["zero_velocity", "nonholonomic"], ...] = ("zero_velocity", "nonholonomic")
     imu: Imu = Imu()
     filter: Filter = Filter()
+    adaptation: Adaptation = Adaptation()
     gnss: GnssUse = GnssUse()
     nonholonomic: Nonholonomic = Nonholonomic()
     zero_velocity: ZeroVelocity = ZeroVelocity()
@@ -151,160 +156,6 @@ class System(Struct, forbid_unknown_fields=True, frozen=True):
     clock: Clock = Clock()
     mounting: Mounting = Mounting()
     alignment: Alignment = Alignment()
-
-
-def parse(text: str, where: str) -> System:
-    """A system from the text of a TOML file.
-
-    Parameters
-    ----------
-    text : str
-    where : str
-        What to call it in an error.
-
-    Returns
-    -------
-    System
-
-    Raises
-    ------
-    ConfigError
-        With the path of the key and the valid choices.
-    """
-    return checked(loads(text, where), where)
-
-
-def loads(text: str, where: str) -> dict[str, Any]:
-    """Tables of a TOML text.
-
-    Parameters
-    ----------
-    text : str
-    where : str
-        What to call it in an error.
-
-    Returns
-    -------
-    dict
-
-    Raises
-    ------
-    ConfigError
-        If it is not TOML.
-    """
-    try:
-        return tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
-        raise ConfigError(f"{where}: not valid TOML: {error}") from None
-
-
-def checked(tables: Mapping[str, Any], where: str) -> System:
-    """A system from the tables of its TOML.
-
-    Parameters
-    ----------
-    tables : mapping
-    where : str
-        What to call it in an error.
-
-    Returns
-    -------
-    System
-
-    Raises
-    ------
-    ConfigError
-        With the path of the key and the valid choices.
-    """
-    system = typed(tables, System, where)
-    unknown = [name for name in system.filter.states if name not in EXTRAS]
-    if len(set(system.filter.states)) < len(system.filter.states):
-        raise ConfigError(f"{where}: filter.states names a block twice; name each once")
-    if unknown:
-        raise ConfigError(f"{where}: filter.states has {unknown[0]!r}; choose from {', '.join(EXTRAS)}")
-    return system
-
-
-def typed(tables: Mapping[str, Any], kind: type[T], where: str) -> T:
-    """Tables of a TOML file as the struct that they should be.
-
-    Parameters
-    ----------
-    tables : mapping
-    kind : type of msgspec.Struct
-    where : str
-        What to call the file in an error.
-
-    Returns
-    -------
-    msgspec.Struct
-        Of that kind.
-
-    Raises
-    ------
-    ConfigError
-        With the path of the key and the valid choices.
-    """
-    try:
-        return msgspec.convert(tables, kind)
-    except msgspec.ValidationError as error:
-        raise ConfigError(f"{where}: {_explain(str(error), kind)}") from None
-
-
-def _explain(message: str, kind: type[Struct]) -> str:
-    """Msgspec's message with a dotted path, and the keys that there are where one is unknown."""
-    text, _, place = message.partition(" - at `")
-    path = place.rstrip("`").removeprefix("$").lstrip(".")
-    if "unknown field" in text:
-        for part in re.findall(r"\w+", re.sub(r"\[.*?\]", "", path)):
-            kind = next((_struct(f.type) or kind for f in fields(kind) if f.encode_name == part), kind)
-        return f"{text} in {path or 'the top table'}; it may hold: {', '.join(kind.__struct_fields__)}"
-    return f"{path}: {text}" if path else text
-
-
-def _struct(kind: Any) -> type[Struct] | None:
-    """The struct in a type such as `Struct | tuple[Struct, ...] | None`."""
-    if isinstance(kind, type) and issubclass(kind, Struct):
-        return kind
-    return next((found for part in get_args(kind) if (found := _struct(part))), None)
-
-
-def load(name: str | Path) -> System:
-    """A system by its built-in name or from a TOML file.
-
-    Parameters
-    ----------
-    name : str or Path
-
-    Returns
-    -------
-    System
-
-    Raises
-    ------
-    ConfigError
-        If there is neither, or the file is wrong.
-    """
-    path = Path(name)
-    if path.suffix == ".toml":
-        try:
-            return parse(path.read_text(encoding="utf-8"), str(path))
-        except (OSError, UnicodeDecodeError) as error:
-            raise ConfigError(f"{path}: cannot be read ({error}); give a TOML file") from None
-    found = files("gapless.systems").joinpath(f"{name}.toml")
-    if not found.is_file():
-        raise ConfigError(
-            f"system {name!r} is unknown; choose from {', '.join(names())} or give a .toml file"
-        )
-    return parse(found.read_text(encoding="utf-8"), f"{name}.toml")
-
-
-def names() -> list[str]:
-    """Names of the built-in systems.
-
-    Returns
-    -------
-    list of str
-    """
-    folder = files("gapless.systems").iterdir()
-    return sorted(entry.name.removesuffix(".toml") for entry in folder if entry.name.endswith(".toml"))
+    denoise: DenoiseUse = DenoiseUse()
+    bridge: BridgeUse = BridgeUse()
+    learner: LearnerUse = LearnerUse()

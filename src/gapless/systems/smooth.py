@@ -21,6 +21,7 @@ from gapless.systems.adjust import graded
 from gapless.systems.build import stamps
 from gapless.systems.decide import decide
 from gapless.systems.fuse import Progress, collect, settings_for, withhold_from
+from gapless.systems.prepare import prepared
 from gapless.systems.recipe import System
 from gapless.tape import Row, Tape
 
@@ -69,6 +70,7 @@ def smooth(
         If the recipe corrects by feed-forward, or rows are asked for between its ticks.
     """
     system, outages = graded(System() if system is None else system, recording), tuple(outages)
+    recording = prepared(recording, system)
     open_sky = withhold_from(recording, outages)
     decided = decide(open_sky, system)
     built = settings_for(open_sky, system, decided, rate)

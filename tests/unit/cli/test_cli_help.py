@@ -5,7 +5,7 @@ import sys
 
 import pytest
 
-VERBS = ("", "inspect", "fuse", "bench", "reproduce", "report", "simulate", "convert", "sweep")
+VERBS = ("", "inspect", "fuse", "systems", "bench", "reproduce", "report", "simulate", "convert", "sweep")
 HEAVY = ("matplotlib", "numpy", "numba", "pyarrow", "msgspec", "pandas", "scipy", "fsspec", "distributed")
 
 
@@ -40,7 +40,8 @@ def test_names_in_the_help_are_those_there_are(shell):
     from gapless.io import WRITERS
     from gapless.sensors import grade_names
     from gapless.simulate import PROFILES
-    from gapless.systems.recipe import System, names
+    from gapless.systems.library import names
+    from gapless.systems.recipe import System
 
     said = re.sub(r"-\s+", "-", shell("simulate", "--help").output)
     for name in (*PROFILES, *grade_names()):

@@ -11,7 +11,7 @@ from gapless.laboratory.recipes import Recipe
 from gapless.scenarios import Effect, Outage, parse, plan
 from gapless.systems.forks import LEAD, first_touched
 from gapless.systems.fuse import decide_before, fuse, withhold_from
-from gapless.systems.recipe import load
+from gapless.systems.library import load
 
 
 def test_passes_are_plain_runs(either, constraints, same):

@@ -20,7 +20,7 @@ from gapless.papers.page import summary
 from gapless.papers.start import fuse_from
 from gapless.papers.tables import number, tables
 from gapless.systems.adjust import changed
-from gapless.systems.recipe import load
+from gapless.systems.library import load
 from gapless.units import DEG
 
 

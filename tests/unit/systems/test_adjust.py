@@ -2,7 +2,8 @@ import pytest
 
 from gapless.errors import ConfigError
 from gapless.systems.adjust import with_clock, without
-from gapless.systems.recipe import System, load
+from gapless.systems.library import load
+from gapless.systems.recipe import System
 
 
 def test_without_takes_out_and_says_so():

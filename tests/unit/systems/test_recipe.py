@@ -6,7 +6,8 @@ import pytest
 
 from gapless.errors import ConfigError
 from gapless.inertial.layout import EXTRAS
-from gapless.systems.recipe import System, load, names, parse
+from gapless.systems.library import load, names, parse
+from gapless.systems.recipe import System
 
 
 def refused(text):

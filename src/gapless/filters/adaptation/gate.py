@@ -10,32 +10,30 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import NamedTuple, Self
+from typing import Annotated, ClassVar, NamedTuple, Self
 
 import numpy as np
+from msgspec import Meta, Struct
 
+from gapless.filters.adaptation.base import Innovation, Role, Verdict
+from gapless.filters.quantile import chi_square_quantile
 from gapless.recording import Array
 
 SOFT = {1: 6.63, 2: 9.21, 3: 11.34, 6: 16.81}
 """99 % quantiles of chi-square by dimension."""
 
 
-class Verdict(NamedTuple):
-    """What to do with an observation.
+class GateTable(Struct, forbid_unknown_fields=True, frozen=True):
+    """`hard` bound of rejection in multiples of the soft one, `slope` of R beyond that.
 
-    Parameters
-    ----------
-    factor : float
-        On R: 1 as stated, more where doubted, inf where rejected.
-    widen : bool
-        Add z z' to P first: the filter is wrong, not the observation.
+    `gap`: seconds without an accepted observation after which two that agree are believed; `patience`:
+    seconds of agreement after which they are believed in any case.
     """
 
-    factor: float
-    widen: bool
-
-
-_AS_STATED = Verdict(1.0, False)
+    hard: Annotated[float, Meta(ge=1.0)] = 1e3
+    slope: Annotated[float, Meta(ge=1.0)] = 1.5
+    gap: Annotated[float, Meta(ge=0.0)] = 5.0
+    patience: Annotated[float, Meta(ge=0.0)] = 5.0
 
 
 class _Run(NamedTuple):
@@ -54,14 +52,7 @@ class Gate:
 
     Parameters
     ----------
-    hard : float
-        Rejection bound, in multiples of the soft bound.
-    slope : float
-        How fast R grows beyond the soft bound.
-    gap : float
-        Seconds without an accepted observation after which two that agree are believed.
-    patience : float
-        Seconds of agreement after which they are believed in any case.
+    table : GateTable
     large : dict of str to (float, float)
         By channel: how large the disagreement must be to suspect the filter without a gap
         (smaller ones are left to the inflated R: a fix that is a few metres wrong for some
@@ -69,52 +60,37 @@ class Gate:
         it is the reading that is absurd (no filter beside good fixes is 60 m/s wrong).
     """
 
-    hard: float = 1e3
-    slope: float = 1.5
-    gap: float = 5.0
-    patience: float = 5.0
+    table: GateTable = field(default_factory=GateTable)
     large: dict[str, tuple[float, float]] = field(
         default_factory=lambda: {"position": (30.0, math.inf), "velocity": (3.0, 60.0)}
     )
     accepted: dict[str, float] = field(default_factory=dict)
     runs: dict[str, _Run] = field(default_factory=dict)
+    Table: ClassVar[type[GateTable]] = GateTable
+    role: ClassVar[Role] = "test"
+    bends_gain: ClassVar[bool] = False
+    reckons_optimal: ClassVar[bool] = False
 
-    def judge(self, channel: str, time: float, z: Array, nis: float, r: Array) -> Verdict:
-        """Verdict on an observation, and the memory of it.
-
-        Parameters
-        ----------
-        channel : str
-        time : float
-            [s]
-        z : ndarray, shape (m,)
-            Innovation.
-        nis : float
-            z' S^-1 z.
-        r : ndarray, shape (m, m)
-            As stated.
-
-        Returns
-        -------
-        Verdict
-        """
-        soft = SOFT[z.size]
+    def judge(self, innovation: Innovation) -> Verdict:
+        """R as stated, inflated, or none; see `Adaptation.judge`."""
+        channel, time, z, _, r, nis = innovation
+        soft = SOFT.get(z.size) or chi_square_quantile(0.99, z.size)
         if nis <= soft:
             self.accepted[channel] = time
             self.runs.pop(channel, None)
-            return _AS_STATED
+            return Verdict(r)
         run = self._extend(channel, time, z, np.sqrt(np.diag(r)))
         if self._believe(channel, run, z):
             self.accepted[channel] = time
             self.runs.pop(channel, None)
-            return Verdict(1.0, True)
-        if not nis <= soft * self.hard:
-            return Verdict(math.inf, False)
-        return Verdict(self.slope * nis / soft, False)
+            return Verdict(r, widen=True)
+        if not nis <= soft * self.table.hard:
+            return Verdict(None)
+        return Verdict(r * (self.table.slope * nis / soft))
 
     def _extend(self, channel: str, time: float, z: Array, sd: Array) -> _Run:
         run = self.runs.get(channel)
-        gap = time - self.accepted.get(channel, time) > self.gap
+        gap = time - self.accepted.get(channel, time) > self.table.gap
         agree = False
         if run is not None:
             slack = 4.0 * sd + 0.2 * float(np.linalg.norm(z)) + 1.0 * (time - run.last)
@@ -135,7 +111,7 @@ class Gate:
         return (
             least < float(np.linalg.norm(z[:2])) < most
             and run.length >= 4
-            and run.last - run.start >= self.patience
+            and run.last - run.start >= self.table.patience
         )
 
     def copy(self) -> Self:
@@ -145,6 +121,4 @@ class Gate:
         -------
         Gate
         """
-        return type(self)(
-            self.hard, self.slope, self.gap, self.patience, self.large, dict(self.accepted), dict(self.runs)
-        )
+        return type(self)(self.table, self.large, dict(self.accepted), dict(self.runs))

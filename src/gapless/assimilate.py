@@ -1,0 +1,92 @@
+"""One observation into the belief: how surprising it is, how it counts, what it corrects."""
+
+from __future__ import annotations
+
+import math
+
+from gapless.filters.adaptation.base import Innovation, Verdict
+from gapless.filters.adaptation.registry import kind_of
+from gapless.filters.update import assess, correct
+from gapless.inertial.belief import inject
+from gapless.inertial.layout import ROW
+from gapless.journal import Journal
+from gapless.measurements.base import Observation
+from gapless.recording import Array
+from gapless.settings import Settings
+from gapless.state import State
+from gapless.tape import Tape
+
+DENSITIES = 5
+"""How many of the noise parameters are densities; the rest are rates."""
+
+
+def assimilate(
+    state: State,
+    settings: Settings,
+    channel: str,
+    time: float,
+    o: Observation,
+    journal: Journal,
+    tape: Tape | None = None,
+) -> bool:
+    """Adapt, correct, write down.
+
+    Parameters
+    ----------
+    state : State
+        Changed in place.
+    settings : Settings
+    channel : str
+    time : float
+        The observation holds for [s].
+    o : Observation
+    journal : Journal
+    tape : Tape, optional
+
+    Returns
+    -------
+    bool
+        False where the observation was rejected, as one that is not finite always is.
+    """
+    b, n = state.belief, settings.layout.n
+    nis, s, hp = assess(b.p, ROW, n, o.z, o.H, o.R)
+    verdict = Verdict(None)
+    if math.isfinite(nis):
+        verdict = state.adaptation[kind_of(channel)].judge(Innovation(channel, time, o.z, s, o.R, nis))
+    journal.innovation(channel, time, o.z, s, nis, _factor(verdict.r, o.R))
+    _process(state, settings, verdict)
+    if verdict.widen:
+        b.widen(o.H, o.z)
+    r = verdict.r
+    if r is None:
+        return False
+    if verdict.widen:
+        _, s, hp = assess(b.p, ROW, n, o.z, o.H, r)
+    elif r is not o.R:
+        s = s + (r - o.R)
+    if tape is not None:
+        tape.corrected(o.H, hp, s, o.z)
+    dx = correct(b.p, ROW, n, o.z, o.H, r, s, hp, verdict.gain)
+    if o.slow is not None:
+        state.wander.hear(time, b.p, ROW, r, o.slow)
+    if b.error.size:
+        b.error[:n] += dx
+    else:
+        inject(b.x, dx)
+        b.trail.shift(dx[3:6])
+    return True
+
+
+def _factor(counted: Array | None, stated: Array) -> float:
+    """By how much R was inflated, for the journal: the mean over its variances."""
+    if counted is None:
+        return math.inf
+    return 1.0 if counted is stated else float((counted.diagonal() / stated.diagonal()).mean())
+
+
+def _process(state: State, settings: Settings, verdict: Verdict) -> None:
+    """What a rule does to the way to the next epoch."""
+    state.fade *= verdict.fade
+    if verdict.noise is not None:
+        state.noise = settings.noise.copy()
+        state.noise[:DENSITIES] *= verdict.noise

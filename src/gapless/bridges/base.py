@@ -1,0 +1,84 @@
+"""The role of a bridge: a sensor that learns while GNSS speaks and speaks while GNSS is silent."""
+
+from __future__ import annotations
+
+from typing import NamedTuple, Protocol, Self
+
+from gapless.events import Motion, Reading
+from gapless.inertial.belief import Belief
+from gapless.measurements.base import Observation
+from gapless.solution import Decision
+
+
+class Saying(NamedTuple):
+    """What a bridge says.
+
+    Parameters
+    ----------
+    channel : str
+        Name of its innovations in the journal.
+    observation : Observation
+    """
+
+    channel: str
+    observation: Observation
+
+
+class Bridge(Protocol):
+    """What a navigator asks of a bridge.
+
+    It is copied with the navigator, often: `copy` must be cheap. It may not look at a clock, or the
+    same data would give other bits elsewhere.
+    """
+
+    def hear(self, belief: Belief, reading: Reading) -> None:
+        """Learn from a reading that the filter has just used.
+
+        Parameters
+        ----------
+        belief : Belief
+            After the update.
+        reading : Reading
+        """
+        ...
+
+    def tick(self, belief: Belief, motion: Motion) -> tuple[Saying, ...]:
+        """What it has to say at the end of a tick; nothing while GNSS speaks, nothing untrained.
+
+        Parameters
+        ----------
+        belief : Belief
+        motion : Motion
+
+        Returns
+        -------
+        tuple of Saying
+        """
+        ...
+
+    def lost(self) -> None:
+        """The IMU was silent: what went before does not lead up to what follows."""
+        ...
+
+    def decisions(self, start: float) -> tuple[Decision, ...]:
+        """What it learned and when, for the summary.
+
+        Parameters
+        ----------
+        start : float
+            Time of the first IMU sample [s].
+
+        Returns
+        -------
+        tuple of Decision
+        """
+        ...
+
+    def copy(self) -> Self:
+        """An independent bridge with the same memory.
+
+        Returns
+        -------
+        Bridge
+        """
+        ...

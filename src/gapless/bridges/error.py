@@ -1,0 +1,146 @@
+"""The error of an uncorrected INS as what is learned: O_INS-dP and its kin.
+
+One model with four parts to choose gives five of the papers' and their comparators': what of the INS is
+shown (features, now and some epochs back), how many past errors are shown beside it, against what the
+error is taken, and which of its components are learned. Wang et al. 2018 (O_INS-dP: INS against GNSS),
+Xu, Li & Rizos 2010 (O_INS-X_k: against the filter's estimate), Georges et al. 2015 (with a sliding window
+of past errors, each prediction feeding the next), Aslinezhad et al. 2020 (past errors alone: NAR; five
+past INS samples alone: feed-forward).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Final, NamedTuple
+
+import numpy as np
+
+from gapless.bridges.epochs import Epoch, features, follows
+from gapless.bridges.model import Part
+from gapless.bridges.shadow import difference
+from gapless.inertial.belief import Belief
+from gapless.inertial.coast import STATE
+from gapless.recording import Array
+
+PLACES: Final = {"position": 0, "velocity": 3, "attitude": 6}
+"""Where a component starts in an error, and in the error state of a filter."""
+
+
+class Course(NamedTuple):
+    """How far the model has come in an outage.
+
+    Parameters
+    ----------
+    recent : tuple of Epoch
+        The last epochs, oldest first; as many as a row shows beside its own.
+    past : tuple of ndarray
+        The last errors, oldest first: true ones at first, then predicted ones; as many as a row shows.
+    error : ndarray, shape (k,)
+        The last one predicted.
+    """
+
+    recent: tuple[Epoch, ...]
+    past: tuple[Array, ...]
+    error: Array
+
+
+@dataclass(frozen=True)
+class ErrorModel:
+    """INS (now, and before) and its past errors -> its error.
+
+    Parameters
+    ----------
+    features : tuple of str
+        What of the shadow INS is shown, from `FEATURES`; may be empty where `window` is not 0.
+    lags : int
+        Epochs shown of it, this one included.
+    window : int
+        Past errors shown.
+    reference : str
+        "gnss", or "filter" for its estimate after the fix.
+    learns : tuple of str
+        Components: "position", "velocity", and with the filter as reference "attitude".
+    axes : int
+        2 for north and east, 3 for down too.
+    """
+
+    features: tuple[str, ...]
+    lags: int
+    window: int
+    reference: str
+    learns: tuple[str, ...]
+    axes: int
+
+    @property
+    def memoryless(self) -> bool:
+        """Whether the shadow may start anew when an outage begins: no past error is asked for."""
+        return self.window == 0
+
+    def pairs(self, epochs: Sequence[Epoch]) -> tuple[Array, Array]:
+        """See `Model`."""
+        rows, targets, run = [], [], 0
+        need = max(self.lags - 1, self.window)
+        known = [self._error(e) for e in epochs]
+        for i, epoch in enumerate(epochs):
+            run = run + 1 if i and follows(epoch, epochs[i - 1]) else 0
+            if run >= need:
+                recent, past = epochs[max(0, i - self.lags + 1) : i], known[i - self.window : i]
+                rows.append(self.row(Course(tuple(recent), tuple(past), known[i]), epoch))
+                targets.append(known[i])
+        x, y = np.array(rows).reshape(len(rows), -1), np.array(targets).reshape(len(rows), -1)
+        good = np.isfinite(x).all(axis=1) & np.isfinite(y).all(axis=1)
+        return x[good], y[good]
+
+    def begin(self, epochs: Sequence[Epoch], fix: Array) -> Course:
+        """See `Model`: where there are too few errors of this segment, those before its start are none."""
+        tail = [epochs[-1]]
+        for later, earlier in pairwise(reversed(epochs)):
+            if not follows(later, earlier):
+                break
+            tail.insert(0, earlier)
+        past = [np.nan_to_num(self._error(e)) for e in tail][-self.window :] if self.window else []
+        missing = self.window - len(past)
+        none = np.zeros(self._error(epochs[-1]).size)
+        recent = tail[-(self.lags - 1) :] if self.lags > 1 else []
+        return Course(tuple(recent), tuple([none] * missing + past), none)
+
+    def row(self, course: Course, epoch: Epoch) -> Array:
+        """See `Model`."""
+        shown = (*course.recent, epoch)
+        shown = (shown[0],) * (self.lags - len(shown)) + shown
+        return np.concatenate([features(self.features, e) for e in shown[-self.lags :]] + list(course.past))
+
+    def carry(self, course: Course, epoch: Epoch, y: Array) -> Course:
+        """See `Model`: each prediction feeds the next."""
+        recent = (*course.recent, epoch)[-(self.lags - 1) :] if self.lags > 1 else ()
+        past = (*course.past, y)[-self.window :] if self.window else ()
+        return Course(recent, past, y)
+
+    def wrong(self, course: Course, epoch: Epoch) -> dict[str, Array]:
+        """See `Model`."""
+        missed = course.error - self._error(epoch)
+        return {name: missed[part] for name, part in self._parts().items()}
+
+    def say(self, course: Course, belief: Belief, epoch: Epoch) -> list[Part]:
+        """See `Model`: the truth is the shadow less its error."""
+        seen = difference(epoch.shadow, belief.estimate()[:STATE])
+        said = []
+        for name, part in self._parts().items():
+            columns = PLACES[name] + np.arange(part.stop - part.start)
+            h = np.zeros((len(columns), belief.layout.n))
+            h[np.arange(len(columns)), columns] = 1.0
+            said.append(Part(name, seen[columns] - course.error[part], h))
+        return said
+
+    def _error(self, epoch: Epoch) -> Array:
+        error = epoch.gnss_error if self.reference == "gnss" else epoch.filter_error
+        return np.concatenate([error[PLACES[name] : PLACES[name] + self._size(name)] for name in self.learns])
+
+    def _size(self, name: str) -> int:
+        return 3 if name == "attitude" else self.axes
+
+    def _parts(self) -> dict[str, slice]:
+        ends = np.cumsum([self._size(name) for name in self.learns]).tolist()
+        return {name: slice(end - self._size(name), end) for name, end in zip(self.learns, ends, strict=True)}

@@ -1,0 +1,298 @@
+"""A bridge with a learner: it collects epochs, trains on them, and speaks when fixes stay away."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+from typing import Any, NamedTuple, Protocol, Self
+
+import numpy as np
+
+from gapless.bridges.base import Saying
+from gapless.bridges.epochs import NOWHERE, Epoch
+from gapless.bridges.model import Model
+from gapless.bridges.noise import FilterNoise, Noise, rehearse
+from gapless.bridges.shadow import Shadow, difference
+from gapless.events import Motion, Reading
+from gapless.inertial import propagate as at
+from gapless.inertial.belief import Belief
+from gapless.inertial.coast import STATE
+from gapless.measurements.base import Observation, Sensor
+from gapless.recording import Array
+from gapless.solution import Decision
+
+
+class Regressor(Protocol):
+    """What is asked of a learner: a scikit-learn estimator has it."""
+
+    def fit(self, X: Array, Y: Array) -> Any:
+        """Learn.
+
+        Parameters
+        ----------
+        X : ndarray, shape (n, p)
+        Y : ndarray, shape (n, k)
+
+        Returns
+        -------
+        object
+        """
+        ...
+
+    def predict(self, X: Array) -> Array:
+        """Answer.
+
+        Parameters
+        ----------
+        X : ndarray, shape (n, p)
+
+        Returns
+        -------
+        ndarray, shape (n, k)
+        """
+        ...
+
+
+@dataclass(frozen=True)
+class Schedule:
+    """When a bridge learns, and how much: counted in epochs, never in computing time.
+
+    Parameters
+    ----------
+    samples : int
+        Most epochs that are kept, the latest.
+    least : int
+        Fewer are not trained on.
+    every : float
+        Time between trainings [s]; inf trains when an outage begins.
+    interval : float
+        Epochs closer than this are not used [s].
+    purge : int
+        Epochs left out between those trained on and those held out.
+    slack : float
+        How much later than it holds a fix may arrive [s]: silence begins so much later.
+    """
+
+    samples: int = 300
+    least: int = 30
+    every: float = math.inf
+    interval: float = 1.0
+    purge: int = 5
+    slack: float = 0.0
+
+
+class Trained(NamedTuple):
+    """A learner that has learned.
+
+    Parameters
+    ----------
+    learner : Regressor
+        Never changed again.
+    noise : Noise
+    time : float
+        When [s].
+    rows : int
+        From so many.
+    """
+
+    learner: Regressor
+    noise: Noise
+    time: float
+    rows: int
+
+
+@dataclass
+class LearnedBridge:
+    """An input-output model, a learner and a noise.
+
+    Parameters
+    ----------
+    model : Model
+    learner : callable
+        A new, untrained one.
+    sensors : dict of str to Sensor
+        "position", and "velocity" where there is one.
+    noise : Noise
+    schedule : Schedule
+    shadow : Shadow
+    trained : Trained, optional
+        One that has learned elsewhere: nothing is learned here then.
+    """
+
+    model: Model
+    learner: Callable[[], Regressor] | None
+    sensors: dict[str, Sensor]
+    noise: Noise = field(default_factory=FilterNoise)
+    schedule: Schedule = field(default_factory=Schedule)
+    shadow: Shadow = field(default_factory=Shadow)
+    trained: Trained | None = None
+    trainings: tuple[Trained, ...] = ()
+    epochs: list[Epoch] = field(default_factory=list)
+    heard: dict[str, Array] = field(default_factory=dict)
+    fix: Array = field(default_factory=lambda: NOWHERE)
+    fix_time: float = math.nan
+    velocity_error: tuple[float, Array] = (-math.inf, NOWHERE)
+    felt: Array = field(default_factory=lambda: np.zeros(6))
+    felt_before: Array = field(default_factory=lambda: np.zeros(6))
+    felt_fix: Array = field(default_factory=lambda: np.zeros(6))
+    before: float = math.nan
+    course: Any = None
+    began: float = math.nan
+    count: int = 0
+
+    def hear(self, belief: Belief, reading: Reading) -> None:
+        """See `Bridge`."""
+        if reading.channel not in self.sensors:
+            return
+        seen = self.sensors[reading.channel].observe(belief, reading)
+        self.heard[reading.channel] = seen.R
+        if not self.shadow.running:
+            return
+        x = self.shadow.now(belief)
+        apart = difference(x, belief.estimate()[:STATE])
+        if reading.channel == "velocity":
+            self.velocity_error = (reading.time, apart[3:6] - seen.z)
+            return
+        if not math.isnan(self.began):  # an outage ends: its last word is no epoch to go on from
+            self.course, self.began, self.count, self.before = None, math.nan, 0, math.nan
+        self.fix, self.fix_time, self.felt_fix = reading.value, reading.time, self._felt_now(belief)
+        if not reading.time - self.before < self.schedule.interval - 0.05:
+            self._learn_from(belief, reading.time, x, apart, seen.z)
+
+    def tick(self, belief: Belief, motion: Motion) -> tuple[Saying, ...]:
+        """See `Bridge`."""
+        self.felt = self.felt + motion.felt * motion.dt
+        silent = motion.time - self.fix_time > self._patience()
+        if not silent:
+            self._keep_up(belief, motion)
+            return ()
+        self.shadow.tick(belief, motion)
+        if self.course is None:
+            if math.isnan(self.began):
+                self._go_silent(belief, motion.time)
+            if self.course is None:
+                return ()
+        if motion.time < self.before + self._interval() - 0.5 * motion.dt:
+            return ()
+        return self._speak(belief, motion.time)
+
+    def lost(self) -> None:
+        """See `Bridge`."""
+        self.before = self.fix_time = self.shadow.began = math.nan
+        self.course, self.velocity_error = None, (-math.inf, NOWHERE)
+
+    def decisions(self, start: float) -> tuple[Decision, ...]:
+        """See `Bridge`."""
+        return tuple(
+            Decision("bridge trained", t.rows, "epochs", "data", f"{t.time - start:.1f} s; {t.noise.text}")
+            for t in self.trainings
+        )
+
+    def copy(self) -> Self:
+        """See `Bridge`: values are shared, lists are not."""
+        return replace(self, epochs=list(self.epochs), heard=dict(self.heard), shadow=self.shadow.copy())
+
+    # --- learning -------------------------------------------------------------------------------
+
+    def _learn_from(self, belief: Belief, time: float, x: Array, apart: Array, seen: Array) -> None:
+        """Keep an epoch; `apart` is shadow less filter, `seen` is GNSS less filter."""
+        when, velocity = self.velocity_error
+        if not time - when < self.schedule.interval:
+            # a receiver without velocities: the filter's, which its positions hold, stands in
+            velocity = apart[3:6]
+        gnss = np.concatenate([apart[:3] - seen, velocity])
+        epoch = self._epoch(belief, time, x)
+        if not epoch.dt < 1.6 * self._interval():
+            epoch = epoch._replace(dt=math.nan)
+        epoch = epoch._replace(gnss_error=gnss, filter_error=apart, fix=self.fix)
+        self.epochs.append(epoch)
+        del self.epochs[: -self.schedule.samples]
+        self.felt_before, self.before = self._felt_now(belief), time
+
+    def _epoch(self, belief: Belief, time: float, x: Array) -> Epoch:
+        """An epoch without what GNSS said in it."""
+        dt = time - self.before
+        mean = (self._felt_now(belief) - self.felt_before) / dt
+        shadow, unknown = self.shadow, np.full(9, np.nan)
+        return Epoch(
+            time, dt, shadow.starts, time - shadow.began, x, shadow.displacement(x),
+            belief.estimate()[3:6].copy(), mean[:3], mean[3:], unknown[:6], unknown, NOWHERE,
+        )  # fmt: skip
+
+    def _felt_now(self, belief: Belief) -> Array:
+        return self.felt + belief.memory[at.TICK_W : at.TICK_W + 6]
+
+    def _interval(self) -> float:
+        """Time between epochs, as this receiver has it."""
+        steps = [e.dt for e in self.epochs[-20:] if not math.isnan(e.dt)]
+        return float(np.median(steps)) if steps else self.schedule.interval
+
+    def _patience(self) -> float:
+        return 1.5 * self._interval() + self.schedule.slack
+
+    def _keep_up(self, belief: Belief, motion: Motion) -> None:
+        """While GNSS speaks: the shadow starts anew where that is due, and a schedule is kept."""
+        if self.shadow.due(motion.time):
+            self.shadow.restart(belief, motion.time)
+        else:
+            self.shadow.tick(belief, motion)
+        last = self.trained.time if self.trained is not None else -math.inf
+        if math.isfinite(self.schedule.every) and motion.time - last >= self.schedule.every:
+            self._train(motion.time)
+
+    def _train(self, time: float) -> None:
+        """Train on what there is, after a rehearsal on what was held out of a first training."""
+        if self.learner is None:
+            return
+        noise = self.noise
+        if noise.held_out:
+            noise = self._calibrated(noise)
+        x, y = self.model.pairs(self.epochs)
+        if len(x) < self.schedule.least:
+            return
+        learner = self.learner()
+        learner.fit(x, y)
+        self.trained = Trained(learner, noise, time, len(x))
+        self.trainings = (*self.trainings, self.trained)
+
+    def _calibrated(self, noise: Noise) -> Noise:
+        """The noise that fits what a learner of the older epochs gets wrong in the later ones."""
+        cut = round((1.0 - noise.held_out) * len(self.epochs))
+        older, later = self.epochs[: max(0, cut - self.schedule.purge)], self.epochs[cut:]
+        x, y = self.model.pairs(older)
+        if len(x) < max(2, self.schedule.least // 2) or len(later) < 6 or self.learner is None:
+            return noise
+        learner = self.learner()
+        learner.fit(x, y)
+        horizon = max(5, min(60, len(later) // 2))
+        return noise.fitted(rehearse(self.model, learner.predict, later, horizon))
+
+    # --- speaking -------------------------------------------------------------------------------
+
+    def _go_silent(self, belief: Belief, time: float) -> None:
+        """Fixes stay away: train if that is due, and begin."""
+        self.began = self.fix_time
+        if not self.epochs or math.isnan(self.before):
+            return
+        if not math.isfinite(self.schedule.every):
+            self._train(time)
+        if self.trained is None:
+            return
+        if self.model.memoryless and math.isfinite(self.shadow.interval):
+            self.shadow.restart(belief, time)
+        self.course = self.model.begin(self.epochs, self.fix)
+        self.felt_before, self.before = self.felt_fix, self.fix_time
+
+    def _speak(self, belief: Belief, time: float) -> tuple[Saying, ...]:
+        assert self.trained is not None
+        epoch = self._epoch(belief, time, self.shadow.x)
+        y = self.trained.learner.predict(self.model.row(self.course, epoch)[None, :])
+        self.course = self.model.carry(self.course, epoch, np.asarray(y, float).reshape(-1))
+        self.felt_before, self.before, self.count = self._felt_now(belief), time, self.count + 1
+        said = []
+        for name, z, h in self.model.say(self.course, belief, epoch):
+            r = self.trained.noise.of(name, len(z), self.heard, time - self.began, self.count)
+            if r is not None and np.isfinite(z).all():
+                said.append(Saying(f"bridge_{name}", Observation(z, h, r)))
+        return tuple(said)

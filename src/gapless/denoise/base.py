@@ -1,0 +1,150 @@
+"""What a denoiser is, how well one does, and what a sound record is."""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+import numpy as np
+
+from gapless.errors import ConfigError, RecordingError
+from gapless.recording import Array
+
+SHORTEST = 32
+"""A record of fewer samples has no modes to speak of: it is left as it is."""
+
+
+class Denoiser(Protocol):
+    """A signal without its noise: a value (frozen dataclass) that holds its parameters and is called.
+
+    It is called with the record of one channel, shape (n,), finite, and its samples per second [Hz];
+    it returns a new array of the same shape, finite, the same bits for the same record. A record
+    shorter than `SHORTEST` comes back as it is.
+    """
+
+    def __call__(self, x: Array, rate: float) -> Array:
+        """Denoise one channel."""
+        ...
+
+    @property
+    def name(self) -> str:
+        """Of the method: "emd"."""
+        ...
+
+    @property
+    def text(self) -> str:
+        """What ran, as a result states it: "emd, whole record: not a real-time result"."""
+        ...
+
+
+def whole_record(denoiser: Denoiser) -> str:
+    """The text of a denoiser that sees the future.
+
+    Parameters
+    ----------
+    denoiser : Denoiser
+
+    Returns
+    -------
+    str
+    """
+    return f"{denoiser.name}, whole record: not a real-time result"
+
+
+def at_least(least: float, **values: float) -> None:
+    """Refuse parameters that are too small.
+
+    Parameters
+    ----------
+    least : float
+        Allowed itself.
+    **values : float
+        By their names.
+
+    Raises
+    ------
+    ConfigError
+        If one is less, or not a number.
+    """
+    for name, value in values.items():
+        if not value >= least:
+            raise ConfigError(f"denoising: {name} = {value:g}; give {least:g} or more")
+
+
+def sound(x: Array) -> Array:
+    """A copy of a record, in which every value is finite.
+
+    Parameters
+    ----------
+    x : array_like, shape (n,)
+
+    Returns
+    -------
+    ndarray, shape (n,)
+
+    Raises
+    ------
+    RecordingError
+        If it is not one channel, or a value is not finite.
+    """
+    record = np.array(x, dtype=np.float64)
+    if record.ndim != 1:
+        raise RecordingError(f"denoising takes one channel, not shape {record.shape}; give columns")
+    bad = np.flatnonzero(~np.isfinite(record))
+    if bad.size:
+        raise RecordingError(f"denoising: sample {bad[0]} is {record[bad[0]]}; fill or cut the record there")
+    return record
+
+
+def snr(signal: Array, estimate: Array) -> float:
+    """Signal-to-noise ratio, 10 lg(sum s^2 / sum (x - s)^2) (papers page, section 2).
+
+    Parameters
+    ----------
+    signal : ndarray, shape (n,)
+        s: the truth in simulation, `two_sided_low_pass` of the raw signal on the road.
+    estimate : ndarray, shape (n,)
+        x, raw or denoised.
+
+    Returns
+    -------
+    float
+        [dB]; infinite for an estimate without error.
+    """
+    error = float(np.sum(np.square(np.asarray(estimate) - signal)))
+    power = float(np.sum(np.square(signal)))
+    with np.errstate(divide="ignore"):
+        return float(10.0 * (np.log10(power) - np.log10(error)))
+
+
+def two_sided_low_pass(x: Array, rate: float, cutoff: float = 5.0, order: int = 4) -> Array:
+    """A signal below a frequency, without delay: what stands for the truth where none is known.
+
+    A Butterworth filter run forwards and back, by its response 1 / (1 + (f / cutoff)^(2 order)) on the
+    spectrum; the ends are mirrored about their last samples. It sees the future: for scores alone.
+
+    Parameters
+    ----------
+    x : ndarray, shape (n,)
+    rate : float
+        Samples per second [Hz].
+    cutoff : float
+        Where half of the amplitude is left [Hz]. 5 Hz is above what a driver does with a car and below
+        what the road and the engine do to its sensors.
+    order : int
+        Of each of the two filters.
+
+    Returns
+    -------
+    ndarray, shape (n,)
+    """
+    record = sound(x)
+    n = len(record)
+    if n < 2:
+        return record
+    # odd about the ends, twice as long: a period that is continuous in value and slope
+    slope = np.linspace(record[0], record[-1], n)
+    bent = record - slope
+    frequency = np.fft.rfftfreq(2 * n - 2, 1.0 / rate)
+    odd = np.concatenate([bent, -bent[-2:0:-1]])
+    kept = np.fft.irfft(np.fft.rfft(odd) / (1.0 + (frequency / cutoff) ** (2 * order)), 2 * n - 2)
+    return np.asarray(slope + kept[:n])

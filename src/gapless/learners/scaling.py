@@ -1,0 +1,106 @@
+"""Inputs and targets in [-1, 1] around any regressor."""
+
+from __future__ import annotations
+
+import warnings
+from typing import Any, ClassVar, Self
+
+import numpy as np
+from sklearn.base import clone
+from sklearn.exceptions import ConvergenceWarning
+from sklearn.preprocessing import MinMaxScaler
+from sklearn.utils import get_tags
+from sklearn.utils.metaestimators import available_if
+
+from gapless.learners.base import Learner
+from gapless.learners.random_layer import relm
+from gapless.recording import Array
+
+
+def _goes_on(scaled: Any) -> bool:
+    return hasattr(scaled._chosen(), "partial_fit")
+
+
+class Scaled(Learner):
+    """A regressor that sees inputs and targets in [-1, 1], and answers in the targets' own units.
+
+    The bounds are those of the first samples; later ones may lie beyond them.
+
+    Parameters
+    ----------
+    regressor : estimator, optional
+        Takes as many outputs as there are; RELM if None.
+
+    Attributes
+    ----------
+    regressor_ : estimator
+        Fitted.
+    inputs_, targets_ : MinMaxScaler
+    """
+
+    _parameter_constraints: ClassVar[dict[str, Any]] = {"regressor": "no_validation"}
+
+    def __init__(self, regressor: Any = None) -> None:
+        self.regressor = regressor
+
+    def __sklearn_tags__(self) -> Any:
+        tags = super().__sklearn_tags__()
+        inner = get_tags(self._chosen()).regressor_tags
+        tags.regressor_tags.poor_score = inner is not None and inner.poor_score
+        return tags
+
+    def _chosen(self) -> Any:
+        return relm() if self.regressor is None else self.regressor
+
+    def fit(self, X: Any, y: Any, **fit_params: Any) -> Self:
+        """Find the bounds and fit the regressor.
+
+        Parameters
+        ----------
+        X : array-like, shape (n, m)
+        y : array-like, shape (n,) or (n, k)
+        **fit_params
+            For the regressor.
+
+        Returns
+        -------
+        Scaled
+        """
+        X, targets, _ = self._checked(X, y)
+        self.inputs_ = MinMaxScaler((-1.0, 1.0)).fit(X)
+        self.targets_ = MinMaxScaler((-1.0, 1.0)).fit(targets)
+        self.regressor_ = clone(self._chosen())
+        with warnings.catch_warnings():  # iterations are a budget: to use it up is no mishap
+            warnings.simplefilter("ignore", ConvergenceWarning)
+            self.regressor_.fit(*self._scaled(X, targets), **fit_params)
+        return self
+
+    @available_if(_goes_on)  # type: ignore[untyped-decorator]  # scikit-learn has no types
+    def partial_fit(self, X: Any, y: Any, **fit_params: Any) -> Self:
+        """Go on with more samples, where the regressor can; the bounds stay.
+
+        Parameters
+        ----------
+        X : array-like, shape (n, m)
+        y : array-like, shape (n,) or (n, k)
+        **fit_params
+            For the regressor.
+
+        Returns
+        -------
+        Scaled
+        """
+        if not hasattr(self, "regressor_"):
+            return self.fit(X, y, **fit_params)
+        X, targets, _ = self._checked(X, y, reset=False)
+        self.regressor_.partial_fit(*self._scaled(X, targets), **fit_params)
+        return self
+
+    def _scaled(self, X: Array, targets: Array) -> tuple[Array, Array]:
+        scaled = self.targets_.transform(targets)
+        return self.inputs_.transform(X), scaled.ravel() if self._flat else scaled
+
+    def _predict(self, X: Array) -> Array:
+        outputs = self.regressor_.predict(self.inputs_.transform(X))
+        answer: Array = self.targets_.inverse_transform(np.reshape(outputs, (len(X), -1)))
+        return answer

@@ -1,0 +1,139 @@
+"""The learned part of a recipe: which bridge, which learner, how unsure it is, and building it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, Literal
+
+from msgspec import Struct
+
+from gapless.errors import ConfigError
+from gapless.systems.values import Count, NonNegative, Positive, WholeNumber
+
+if TYPE_CHECKING:
+    from gapless.bridges.base import Bridge
+    from gapless.bridges.model import Model
+    from gapless.measurements.base import Sensor
+
+
+class BridgeUse(Struct, forbid_unknown_fields=True, frozen=True):
+    """What is learned while GNSS speaks, and said while it is silent; without a model, nothing is.
+
+    `error` learns the error of an INS that is not corrected and starts anew every `reset` seconds;
+    `increment` learns the way that GNSS goes from epoch to epoch. `features` are shown now and
+    `lags` - 1 epochs back, with `window` past errors; `reference` and `learns` say of what error.
+    `noise` is the last fix's (as in the papers) or calibrated on held-out epochs. It trains on the
+    last `samples` epochs at least `interval` seconds apart, when an outage begins or `every` so many
+    seconds, and leaves out `purge` epochs between those trained on and those held out.
+    """
+
+    model: Literal["none", "error", "increment"] = "none"
+    features: tuple[str, ...] = ()
+    lags: Count = 1
+    window: WholeNumber = 0
+    reference: Literal["gnss", "filter"] = "gnss"
+    learns: tuple[Literal["position", "velocity", "attitude"], ...] = ("position", "velocity")
+    axes: Literal[2, 3] = 2
+    reset: Positive = math.inf
+    noise: Literal["filter", "calibrated"] = "filter"
+    samples: Count = 300
+    least: Count = 30
+    every: Positive = math.inf
+    interval: NonNegative = 1.0
+    purge: WholeNumber = 5
+
+
+class LearnerUse(Struct, forbid_unknown_fields=True, frozen=True):
+    """Who learns: a name from the registry or a scikit-learn regressor's dotted path."""
+
+    name: str = "rvfl"
+    seed: WholeNumber = 0
+    parameters: dict[str, Any] = {}
+
+
+def check(use: BridgeUse, where: str) -> None:
+    """See that the parts of a bridge go together.
+
+    Parameters
+    ----------
+    use : BridgeUse
+    where : str
+        What to call the recipe in an error.
+
+    Raises
+    ------
+    ConfigError
+        If they do not, with the reason.
+    """
+    from gapless.bridges.epochs import FEATURES
+
+    if use.model == "none":
+        return
+    unknown = [name for name in use.features if name not in FEATURES]
+    if unknown:
+        raise ConfigError(f"{where}: bridge.features has {unknown[0]!r}; choose from {', '.join(FEATURES)}")
+    if not use.features and not use.window:
+        raise ConfigError(f"{where}: bridge shows its learner nothing; give bridge.features or bridge.window")
+    if use.model == "increment" and (use.window or use.lags > 1):
+        raise ConfigError(f'{where}: bridge.window and bridge.lags are for model = "error"; leave them out')
+    if use.model == "error" and not use.learns:
+        raise ConfigError(f"{where}: bridge.learns is empty; name position, velocity or both")
+    if use.model == "error" and use.reference == "gnss" and "attitude" in use.learns:
+        raise ConfigError(f'{where}: GNSS shows no attitude; learn it with bridge.reference = "filter"')
+
+
+def bridges(
+    use: BridgeUse, who: LearnerUse, sensors: Mapping[str, Sensor], lateness: float
+) -> tuple[Bridge, ...]:
+    """The bridges of a recipe.
+
+    Parameters
+    ----------
+    use : BridgeUse
+    who : LearnerUse
+    sensors : mapping of str to Sensor
+        Of the same system.
+    lateness : float
+        How late fixes arrive [s].
+
+    Returns
+    -------
+    tuple of Bridge
+        None or one.
+
+    Raises
+    ------
+    ConfigError
+        If there is no such learner, or what it needs is not installed.
+    """
+    if use.model == "none":
+        return ()
+    from gapless.bridges.learned import LearnedBridge, Schedule
+    from gapless.bridges.noise import CalibratedNoise, FilterNoise
+    from gapless.bridges.shadow import Shadow
+    from gapless.learners import make
+
+    make(who.name, who.parameters, who.seed)  # say now what is wrong with it, not in the first outage
+    heard = {name: sensors[name] for name in ("position", "velocity") if name in sensors}
+    if "position" not in heard:
+        raise ConfigError("a bridge learns from GNSS positions; add position to sensors")
+    return (
+        LearnedBridge(
+            _model(use, heard),
+            lambda: make(who.name, who.parameters, who.seed),
+            heard,
+            CalibratedNoise() if use.noise == "calibrated" else FilterNoise(),
+            Schedule(use.samples, use.least, use.every, use.interval, use.purge, lateness),
+            Shadow(use.reset),
+        ),
+    )
+
+
+def _model(use: BridgeUse, sensors: Mapping[str, Sensor]) -> Model:
+    from gapless.bridges.error import ErrorModel
+    from gapless.bridges.increment import IncrementModel
+
+    if use.model == "increment":
+        return IncrementModel(use.features, use.axes, sensors["position"])
+    return ErrorModel(use.features, use.lags, use.window, use.reference, use.learns, use.axes)

@@ -1,0 +1,129 @@
+"""A recording as a recipe navigates it: its inertial signals denoised, where the recipe says so."""
+
+from __future__ import annotations
+
+import inspect
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+from msgspec import Struct
+
+from gapless.errors import ConfigError
+from gapless.recording import Imu, Recording
+from gapless.solution import Decision
+from gapless.systems.values import WholeNumber
+
+if TYPE_CHECKING:
+    from gapless.denoise import Denoiser
+    from gapless.systems.recipe import System
+
+
+class DenoiseUse(Struct, forbid_unknown_fields=True, frozen=True):
+    """How inertial signals are denoised before anything else; without a method, they are not.
+
+    `window` 0 denoises the whole record, which sees the future: for post-processing. Otherwise every
+    sample knows of earlier ones only, through windows of so many samples, one every `step` samples.
+    """
+
+    method: str = "none"
+    window: WholeNumber = 512
+    step: WholeNumber = 128
+    parameters: dict[str, Any] = {}
+
+
+_done: dict[tuple[int, str, int, int, str], tuple[Imu, Imu]] = {}
+_MOST = 3
+
+
+def prepared(recording: Recording, system: System) -> Recording:
+    """The recording that a system navigates.
+
+    Parameters
+    ----------
+    recording : Recording
+    system : System
+
+    Returns
+    -------
+    Recording
+        The same one where the recipe does not denoise.
+
+    Raises
+    ------
+    ConfigError
+        If there is no such denoiser, or what it needs is not installed.
+    """
+    made = denoiser(system.denoise)
+    if made is None:
+        return recording
+    from gapless.denoise import denoised
+
+    key = (id(recording.imu), (use := system.denoise).method, use.window, use.step, repr(use.parameters))
+    if key not in _done:  # the raw one is kept too, or its id could come again
+        while len(_done) >= _MOST:
+            del _done[next(iter(_done))]
+        _done[key] = (recording.imu, denoised(recording.imu, made))
+    return replace(recording, imu=_done[key][1])
+
+
+def denoiser(use: DenoiseUse) -> Denoiser | None:
+    """The denoiser of a recipe.
+
+    Parameters
+    ----------
+    use : DenoiseUse
+
+    Returns
+    -------
+    Denoiser or None
+
+    Raises
+    ------
+    ConfigError
+        If there is no such denoiser, it has no such parameter, or what it needs is not installed.
+    """
+    if use.method == "none":
+        return None
+    from gapless.denoise import DENOISERS, Windowed
+
+    if use.method not in DENOISERS:
+        raise ConfigError(
+            f"denoise.method: {use.method!r} is unknown; choose from none, {', '.join(DENOISERS)}"
+        )
+    kind = DENOISERS[use.method]
+    known = list(inspect.signature(kind).parameters)
+    for name in use.parameters:
+        if name not in known:
+            raise ConfigError(f"denoise.parameters: {use.method} has no {name!r}; it has {', '.join(known)}")
+    inner = kind(**use.parameters)
+    return Windowed(inner, use.window, use.step) if use.window else inner
+
+
+def sees_the_future(system: System) -> bool:
+    """Whether a system's denoising makes its solution no real-time result.
+
+    Parameters
+    ----------
+    system : System
+
+    Returns
+    -------
+    bool
+    """
+    return system.denoise.method != "none" and not system.denoise.window
+
+
+def denoise_decisions(system: System) -> tuple[Decision, ...]:
+    """What was done to the inertial signals, as a solution states it.
+
+    Parameters
+    ----------
+    system : System
+
+    Returns
+    -------
+    tuple of Decision
+        None or one.
+    """
+    made = denoiser(system.denoise)
+    return () if made is None else (Decision("denoising", made.name, "", "user", made.text),)
