@@ -43,7 +43,7 @@ def tables(done: Reproduction) -> list[Table]:
     simulated = [r for r in done.results if r.experiment.drive is not None]
     main = [r for r in simulated if not r.experiment.aside]
     asides = [r for r in simulated if r.experiment.aside]
-    return [*found, _aside(asides, main[0])] if asides and main else found
+    return [*found, _aside(asides, main)] if asides and main else found
 
 
 def tables_of(results: Results) -> list[Table]:
@@ -155,22 +155,30 @@ def _orders(name: str, found: Iterable[Ranking]) -> Table:
     return Table(f"{name}: order of the methods", head, rows, note)
 
 
-def _aside(asides: Sequence[Results], main: Results) -> Table:
-    """What another assumption changes: the same seeds, error over that of the main experiment."""
+def _aside(asides: Sequence[Results], main: Sequence[Results]) -> Table:
+    """What another assumption changes: the same seeds, error over that of the experiment it varies."""
     rows = []
     for results in asides:
+        varied = _varied(results, main)
         for window in results.experiment.windows:
             for method in results.experiment.methods:
-                found = [beside(results, main, method.name, window.name, column.key) for column in _CHANGED]
+                found = [beside(results, varied, method.name, window.name, column.key) for column in _CHANGED]
                 if found[0][0]:
                     cells = (span(ratio) for _, ratio in found)
                     rows.append((window.name, method.name, results.experiment.name, str(found[0][0]), *cells))
     head = ("outages", "method", "label", "n", *(column.title for column in _CHANGED))
     note = (
-        f'Error under the other assumption over that of the experiment "{main.experiment.name}", same seeds: '
+        "Error under the other assumption over that of the experiment that it varies, same seeds: "
         "geometric mean with its 95 % interval; 1 where it changes nothing."
     )
     return Table("What another assumption changes", head, tuple(rows), note)
+
+
+def _varied(aside: Results, main: Sequence[Results]) -> Results:
+    """The experiment of which another one is a variation: that with the same names of windows."""
+    names = {w.name for w in aside.experiment.windows}
+    same = [r for r in main if {w.name for w in r.experiment.windows} == names]
+    return same[0] if same else main[0]
 
 
 def _absent(results: Results) -> Table:

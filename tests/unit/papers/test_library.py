@@ -122,8 +122,12 @@ def test_tan_trains_on_the_curve_of_its_outage():
     drive = paper("tan2015").experiments[2].drive
     made = make(drive, 1)
     heading = np.unwrap(made.reference.euler[:, 2])
-    first, second = (np.interp(t + np.arange(81.0), made.reference.time, heading) for t in (313.0, 943.0))
-    assert first - first[0] == pytest.approx(second - second[0], abs=0.01)
+    first, second = (np.interp(t + np.arange(81.0), made.reference.time, heading) for t in (313.0, 394.0))
+    assert first == pytest.approx(second, abs=0.01)
+    aside = paper("tan2015").experiments[4].drive
+    again = np.unwrap(make(aside, 1).reference.euler[:, 2])
+    turned = np.interp([313.0, 554.0], make(aside, 1).reference.time, again)
+    assert abs(turned[1] - turned[0]) == pytest.approx(2.0 * np.pi, abs=0.01)  # round the block
 
 
 def test_drives_follow_from_their_seed():
