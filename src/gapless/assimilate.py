@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from gapless.filters.adaptation.base import Innovation, Verdict
 from gapless.filters.adaptation.registry import kind_of
 from gapless.filters.update import assess, correct
-from gapless.inertial.belief import inject
+from gapless.inertial.belief import Belief, inject
 from gapless.inertial.layout import ROW
 from gapless.journal import Journal
 from gapless.measurements.base import Observation
@@ -68,13 +70,24 @@ def assimilate(
         tape.corrected(o.H, hp, s, o.z)
     dx = correct(b.p, ROW, n, o.z, o.H, r, s, hp, verdict.gain)
     if o.slow is not None:
-        state.wander.hear(time, b.p, ROW, r, o.slow)
+        state.wander.hear(time, *_looked_at(b, o.H), r, o.slow)
     if b.error.size:
         b.error[:n] += dx
     else:
         inject(b.x, dx)
         b.trail.shift(dx[3:6])
     return True
+
+
+def _looked_at(belief: Belief, h: Array) -> tuple[Array, int]:
+    """Covariance of the three states that a fix looks at, and its row length.
+
+    They are those of the position, as near as a known lever arm's attitude allows. With a lever arm that is
+    a state they are the antenna's: the box's alone may be far less certain than what is seen.
+    """
+    if "lever_arm" not in belief.layout:
+        return belief.p, ROW
+    return np.ascontiguousarray(h @ belief.P @ h.T).ravel(), len(h)
 
 
 def _factor(counted: Array | None, stated: Array) -> float:

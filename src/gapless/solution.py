@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -118,3 +120,48 @@ class Solution:
         for a, b in self.outages:
             inside |= (time - self.start >= a) & (time - self.start < b)
         return inside
+
+
+class Observed(NamedTuple):
+    """How well one error state came to be known.
+
+    Parameters
+    ----------
+    block : str
+        "position", "velocity", "attitude", or a further block.
+    axis : int
+    start, end : float
+        Standard deviation at the first and at the last row, SI units.
+    ratio : float
+        End over start; NaN where nothing was uncertain at the start.
+    """
+
+    block: str
+    axis: int
+    start: float
+    end: float
+    ratio: float
+
+
+def observability(solution: Solution) -> tuple[Observed, ...]:
+    """How far the standard deviation of each error state fell: what the run showed, and what it did not.
+
+    Parameters
+    ----------
+    solution : Solution
+
+    Returns
+    -------
+    tuple of Observed
+        Axis by axis; empty without rows.
+    """
+    sd = solution.trajectory.sd
+    navigation = {
+        name: sd[:, 3 * k : 3 * k + 3] for k, name in enumerate(("position", "velocity", "attitude"))
+    }
+    found = []
+    for block, sds in {**navigation, **solution.states_sd}.items():
+        for axis in range(sds.shape[1] if len(sds) else 0):
+            start, end = float(sds[0, axis]), float(sds[-1, axis])
+            found.append(Observed(block, axis, start, end, end / start if start > 0.0 else math.nan))
+    return tuple(found)

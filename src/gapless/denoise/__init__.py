@@ -7,9 +7,11 @@ from __future__ import annotations
 
 from typing import Final
 
-from gapless.denoise.base import Denoiser, snr, two_sided_low_pass
+from gapless.denoise.base import Denoiser, snr
 from gapless.denoise.emd import Emd
+from gapless.denoise.imu import denoised
 from gapless.denoise.interval import EmdCiit, EmdIit, EmdIt
+from gapless.denoise.low_pass import LowPass
 from gapless.denoise.wavelet import Wavelet
 from gapless.denoise.windowed import Windowed
 
@@ -29,8 +31,9 @@ __all__ = [
     "EmdCiit",
     "EmdIit",
     "EmdIt",
+    "LowPass",
     "Wavelet",
     "Windowed",
+    "denoised",
     "snr",
-    "two_sided_low_pass",
 ]

@@ -101,7 +101,7 @@ def snr(signal: Array, estimate: Array) -> float:
     Parameters
     ----------
     signal : ndarray, shape (n,)
-        s: the truth in simulation, `two_sided_low_pass` of the raw signal on the road.
+        s: the truth in simulation, `LowPass` of the raw signal on the road.
     estimate : ndarray, shape (n,)
         x, raw or denoised.
 
@@ -114,37 +114,3 @@ def snr(signal: Array, estimate: Array) -> float:
     power = float(np.sum(np.square(signal)))
     with np.errstate(divide="ignore"):
         return float(10.0 * (np.log10(power) - np.log10(error)))
-
-
-def two_sided_low_pass(x: Array, rate: float, cutoff: float = 5.0, order: int = 4) -> Array:
-    """A signal below a frequency, without delay: what stands for the truth where none is known.
-
-    A Butterworth filter run forwards and back, by its response 1 / (1 + (f / cutoff)^(2 order)) on the
-    spectrum; the ends are mirrored about their last samples. It sees the future: for scores alone.
-
-    Parameters
-    ----------
-    x : ndarray, shape (n,)
-    rate : float
-        Samples per second [Hz].
-    cutoff : float
-        Where half of the amplitude is left [Hz]. 5 Hz is above what a driver does with a car and below
-        what the road and the engine do to its sensors.
-    order : int
-        Of each of the two filters.
-
-    Returns
-    -------
-    ndarray, shape (n,)
-    """
-    record = sound(x)
-    n = len(record)
-    if n < 2:
-        return record
-    # odd about the ends, twice as long: a period that is continuous in value and slope
-    slope = np.linspace(record[0], record[-1], n)
-    bent = record - slope
-    frequency = np.fft.rfftfreq(2 * n - 2, 1.0 / rate)
-    odd = np.concatenate([bent, -bent[-2:0:-1]])
-    kept = np.fft.irfft(np.fft.rfft(odd) / (1.0 + (frequency / cutoff) ** (2 * order)), 2 * n - 2)
-    return np.asarray(slope + kept[:n])

@@ -61,7 +61,8 @@ def decompose(x: Array, siftings: int = SIFTINGS) -> tuple[Array, Array]:
     residue : ndarray, shape (n,)
         The imfs and it sum up to `x`.
     """
-    imfs = np.array(list(modes(x, siftings))).reshape(-1, len(x))
+    found = list(modes(x, siftings))
+    imfs = np.array(found).reshape(len(found), len(x))
     residue = np.array(x, dtype=np.float64)
     for mode in imfs:
         residue -= mode

@@ -41,7 +41,8 @@ def respond(
     Parameters
     ----------
     p : ndarray, shape (row * row,)
-        Covariance after the update, its first three states those observed: the gain is p r^-1.
+        Covariance after the update, its first three states those observed (the position, or the antenna
+        where the lever arm is a state): the gain is p r^-1.
     row : int
     r : ndarray, shape (3, 3)
         Covariance of the observation, as it counted.

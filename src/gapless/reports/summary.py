@@ -15,7 +15,7 @@ from gapless.motion import horizontal_velocity, motion
 from gapless.recording import Trajectory
 from gapless.reports.numbers import known, measured, plain
 from gapless.reports.quantities import state
-from gapless.solution import Decision, Innovations, Solution
+from gapless.solution import Decision, Innovations, Solution, observability
 from gapless.units import DEG
 
 _ANGLES = ("roll_rmse", "pitch_rmse", "heading_rmse", "heading_max", "heading_end")
@@ -34,6 +34,7 @@ def summarise(solution: Solution, scores: Scores | None = None) -> dict[str, Any
     dict
         For `summary.json`: numbers, strings, lists and dicts; None where a number is not known.
         Metres, seconds, m/s; angles in degrees, their keys end in "_deg"; states name their unit.
+        "observability" is in SI units.
     """
     moved = travelled(solution.trajectory)
     return {
@@ -47,6 +48,7 @@ def summarise(solution: Solution, scores: Scores | None = None) -> dict[str, Any
         "position_sd": plain(typical_sd(solution)),
         "decisions": [plain(one) for one in solution.decisions],
         "states": {name: _final(solution, name) for name in solution.states},
+        "observability": [plain(one._asdict()) for one in observability(solution)],
         "innovations": {name: plain(channel_statistics(c)) for name, c in solution.innovations.items()},
         "scores": None if scores is None else _scores(scores),
         "outages": _outages(solution, scores),

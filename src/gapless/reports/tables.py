@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping, Sequence
 from html import escape
 from typing import Any
@@ -247,7 +248,7 @@ def innovations(summary: Summary) -> str:
 
 
 def states(summary: Summary) -> str:
-    """Biases and other states at the end of the run.
+    """Biases and other states at the end of the run, and how much of their uncertainty is left.
 
     Parameters
     ----------
@@ -259,12 +260,15 @@ def states(summary: Summary) -> str:
         HTML; "" without further states.
     """
     rows: list[list[Cell]] = []
+    left = {(o["block"], o["axis"]): known(o["ratio"]) for o in summary.get("observability", ())}
     for name, one in summary["states"].items():
         label = escape(state(name, len(one["value"])).label)
-        for axis, value, sd in zip(one["axes"], one["value"], one["sd"], strict=True):
+        for k, (axis, value, sd) in enumerate(zip(one["axes"], one["value"], one["sd"], strict=True)):
             text = measured(known(value), sd, one["unit"])
-            rows.append([label, escape(axis), (escape(text), "n")])
-    return table("States at the end", ["State", "Axis", ("Value", "n")], rows) if rows else ""
+            share = percent(left.get((name, k), math.nan))
+            rows.append([label, escape(axis), (escape(text), "n"), (share, "n")])
+    head: list[Cell] = ["State", "Axis", ("Value", "n"), ("Deviation left", "n")]
+    return table("States at the end", head, rows) if rows else ""
 
 
 def notes(summary: Summary) -> str:

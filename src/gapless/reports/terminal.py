@@ -51,9 +51,14 @@ def _decision_lines(summary: Mapping[str, Any]) -> Iterator[str]:
 
 
 def _state_lines(summary: Mapping[str, Any]) -> Iterator[str]:
+    left: dict[str, list[float]] = {}
+    for o in summary.get("observability", ()):
+        left.setdefault(o["block"], []).append(known(o["ratio"]))
     for name, one in summary["states"].items():
         parts = (measured(known(v), known(sd)) for v, sd in zip(one["value"], one["sd"], strict=True))
-        yield f"  {name.replace('_', ' ')}: {', '.join(parts)} {one['unit']}".rstrip()
+        text = f"  {name.replace('_', ' ')}: {', '.join(parts)} {one['unit']}".rstrip()
+        shares = " ".join(f"{100.0 * share:.0f}" for share in left.get(name, ()))
+        yield text + (f" (sd down to {shares} %)" if shares else "")
 
 
 def _innovation_lines(summary: Mapping[str, Any]) -> Iterator[str]:

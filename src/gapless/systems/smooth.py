@@ -10,6 +10,7 @@ import numpy as np
 
 from gapless.errors import ConfigError
 from gapless.feed import in_order, merged
+from gapless.filters.adaptation.registry import KINDS, bends_gain
 from gapless.filters.smoother import Adjoint, Correction
 from gapless.inertial.belief import inject
 from gapless.journal import Journal
@@ -67,9 +68,11 @@ def smooth(
     AlignmentError
         If the vehicle never moved fast enough for a heading.
     ConfigError
-        If the recipe corrects by feed-forward, or rows are asked for between its ticks.
+        If the recipe corrects by feed-forward, takes another gain than the optimal one, or rows are asked
+        for between its ticks.
     """
     system, outages = graded(System() if system is None else system, recording), tuple(outages)
+    _optimal(system)
     recording = prepared(recording, system)
     open_sky = withhold_from(recording, outages)
     decided = decide(open_sky, system)
@@ -96,6 +99,17 @@ def smooth(
         if progress is not None and np.isfinite(begin):
             progress(recording.duration - 0.5 * (begin - recording.start))
     return _smoothed(forward, rows, navigator)
+
+
+def _optimal(system: System) -> None:
+    """Refuse a filter whose gain is not the optimal one: the adjoint is that of the optimal filter."""
+    for kind in KINDS:
+        rule = bends_gain(getattr(system.adaptation, kind))
+        if rule:
+            raise ConfigError(
+                f"smoothing needs the optimal gain, which {rule} does not take; "
+                f"leave it out of adaptation.{kind}"
+            )
 
 
 def _on_ticks(built: Settings) -> Settings:
