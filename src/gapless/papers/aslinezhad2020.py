@@ -117,5 +117,4 @@ PAPER: Final = Paper(
         "An EKF in gapless gates its fixes; the paper's does not, so EKF is run without any adaptation, and "
         "the gate is a row of its own.",
     ),
-    figures=("convergence",),
 )

@@ -7,10 +7,11 @@ from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import as_completed
 from dataclasses import dataclass, field
 
-from gapless.errors import ConfigError
+from gapless.errors import ConfigError, MissingExtraError
 from gapless.laboratory.study import Source
 from gapless.papers.jobs import Curve, Job, Outcome, Sample, Track, execute, prepare
 from gapless.papers.model import Experiment, Paper
+from gapless.papers.studies import STUDIES, Study
 
 Progress = Callable[[float], None]
 """Told how many drives are done."""
@@ -66,11 +67,17 @@ class Reproduction:
     results : tuple of Results
     seconds : float
         Wall time.
+    studies : dict of str to Study
+        What the paper shows beside its drives.
+    undone : dict of str to str
+        Why a study could not be done.
     """
 
     paper: Paper
     results: tuple[Results, ...]
     seconds: float
+    studies: dict[str, Study] = field(default_factory=dict)
+    undone: dict[str, str] = field(default_factory=dict)
 
 
 def chosen(paper: Paper, seeds: int | None, sources: Sequence[Source]) -> list[tuple[Experiment, int]]:
@@ -151,7 +158,20 @@ def reproduce(
     outcomes = run([job for _, job in jobs], processes, progress)
     for (found, _), outcome in zip(jobs, outcomes, strict=True):
         _gather(found, outcome)
-    return Reproduction(paper, tuple(results), time.perf_counter() - begun)
+    studies, undone = _studied(paper, results)
+    return Reproduction(paper, tuple(results), time.perf_counter() - begun, studies, undone)
+
+
+def _studied(paper: Paper, results: Sequence[Results]) -> tuple[dict[str, Study], dict[str, str]]:
+    """What the paper shows beside its drives, where any of these was simulated."""
+    done, undone = {}, {}
+    simulated = [r.experiment for r in results if r.experiment.drive is not None]
+    for name in paper.studies if simulated else ():
+        try:
+            done[name] = STUDIES[name](simulated[0])
+        except MissingExtraError as error:
+            undone[name] = str(error)
+    return done, undone
 
 
 def run(jobs: Sequence[Job], processes: int, progress: Progress | None = None) -> Iterator[Outcome]:

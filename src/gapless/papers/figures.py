@@ -11,14 +11,20 @@ from typing import Any, Final
 from gapless.errors import MissingExtraError
 from gapless.papers.experiment import Reproduction, Results
 from gapless.papers.jobs import Curve, Track
+from gapless.papers.studies import Convergence, Fitness, Signals
 
 _COLOURS: Final = ("#4b545c", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#0072b2", "#a6761d")
 _DASHES: Final = ("-", "--", ":", "-.")
 _SIZE: Final = (7.2, 4.6)
 _DPI: Final = 150
+_SHOWN: Final = 10.0
+"""Length of a stretch of signals [s]."""
 _CAPTIONS: Final = {
     "errors": "east and north errors of position and velocity through the outage, first drive",
     "motion": "speeds and track of the first drive",
+    "convergence": "misfit on the training data by number of nodes, in deviations of the target",
+    "denoised": "ten seconds of the six channels, raw and after EMD-CIIT of the whole stretch",
+    "fitness": "best (thick) and mean (thin) RMS of cross-validation by generation, stop rule off",
 }
 """By the first word of a figure's name."""
 
@@ -38,7 +44,7 @@ def caption(name: str) -> str:
     str
     """
     kind, _, rest = name.partition("-")
-    return f"{rest.replace('-', ' ')}: {_CAPTIONS[kind]}"
+    return f"{rest.replace('-', ' ')}: {_CAPTIONS[kind]}" if rest else _CAPTIONS[kind]
 
 
 def figures(done: Reproduction) -> dict[str, bytes]:
@@ -87,6 +93,45 @@ def _plans(done: Reproduction) -> Iterator[tuple[str, Draw]]:
             yield f"motion-{results.experiment.name}", partial(_motion, track)
         for where in dict.fromkeys(curve.where for curve in results.curves):
             yield f"errors-{results.experiment.name}-{where}", partial(_errors, results, where)
+
+    for name, study in done.studies.items():
+        yield name, partial(_DRAWN[type(study)], study)
+
+
+def _converging(study: Convergence, figure: Any) -> None:
+    axes = figure.add_subplot()
+    for k, (name, misfit) in enumerate(study.misfit.items()):
+        axes.semilogy(study.nodes, misfit, label=name, linewidth=1.3, **_style(k))
+    _finish(axes, "hidden nodes", "RMSE / standard deviation")
+    axes.legend(fontsize=8, frameon=False)
+
+
+def _fitter(study: Fitness, figure: Any) -> None:
+    panels = figure.subplots(1, len(study.history), squeeze=False)[0]
+    for panel, (axis, history) in zip(panels, study.history.items(), strict=True):
+        generations = range(1, len(history) + 1)
+        panel.semilogy(generations, history[:, 0], color=_COLOURS[1], linewidth=1.8)
+        panel.semilogy(generations, history[:, 1], color=_COLOURS[0], linewidth=0.8)
+        _finish(panel, "generation", f"RMS {axis} [m]")
+
+
+def _denoised(study: Signals, figure: Any) -> None:
+    panels = figure.subplots(3, 2, sharex=True)
+    middle = 0.5 * (study.time[0] + study.time[-1])
+    shown = (study.time >= middle) & (study.time < middle + _SHOWN)
+    for k, panel in enumerate(panels.T.ravel()):
+        panel.plot(study.time[shown], study.raw[k, shown], color=_COLOURS[5], linewidth=0.5)
+        panel.plot(study.time[shown], study.denoised[k, shown], color=_COLOURS[1], linewidth=1.2)
+        what = ("f_x", "f_y", "f_z", "w_x", "w_y", "w_z")[k]
+        _finish(panel, "time [s]" if k % 3 == 2 else "", f"{what} [{'m/s²' if k < 3 else 'rad/s'}]")
+
+
+_DRAWN: Final[dict[type, Callable[[Any, Any], None]]] = {
+    Convergence: _converging,
+    Fitness: _fitter,
+    Signals: _denoised,
+}
+"""What draws each kind of study."""
 
 
 def _errors(results: Results, where: str, figure: Any) -> None:

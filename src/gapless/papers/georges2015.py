@@ -173,5 +173,4 @@ PAPER: Final = Paper(
         "0.08 m with a receiver of 2.5 m cannot be an error against a truth: no fix of the drive is that "
         "good.",
     ),
-    figures=("convergence",),
 )

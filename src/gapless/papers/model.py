@@ -278,8 +278,8 @@ class Paper:
         What the paper leaves open, and what was taken.
     differs : tuple of str
         What cannot agree, and why.
-    figures : tuple of str
-        Kinds of figures beside the error curves, of `figures.KINDS`.
+    studies : tuple of str
+        What is shown beside the drives, of `studies.STUDIES`.
     """
 
     name: str
@@ -289,7 +289,7 @@ class Paper:
     experiments: tuple[Experiment, ...]
     open: tuple[str, ...]
     differs: tuple[str, ...]
-    figures: tuple[str, ...] = field(default=())
+    studies: tuple[str, ...] = ()
 
 
 RMSE_EN: Final = (

@@ -10,7 +10,9 @@ from gapless.evaluation.resampling import FEWEST, Interval
 from gapless.laboratory.tables import Table
 from gapless.papers.compare import NOT_RUN, VERDICTS, Ranking, Ratio, beside, mean, rankings, ratios
 from gapless.papers.experiment import Reproduction, Results
+from gapless.papers.liu2019 import CHANNELS, SNR
 from gapless.papers.model import Column, Published, Window
+from gapless.papers.studies import Signals
 
 DASH: Final = "-"
 _NOT_CAUSAL: Final = "*"
@@ -40,6 +42,10 @@ def tables(done: Reproduction) -> list[Table]:
     list of Table
     """
     found = [table for results in done.results for table in tables_of(results)]
+    found += [_signals(s) for s in done.studies.values() if isinstance(s, Signals)]
+    if done.undone:
+        rows = tuple((name, reason) for name, reason in done.undone.items())
+        found.append(Table("Not shown", ("method", "says"), rows))
     simulated = [r for r in done.results if r.experiment.drive is not None]
     main = [r for r in simulated if not r.experiment.aside]
     asides = [r for r in simulated if r.experiment.aside]
@@ -172,6 +178,24 @@ def _aside(asides: Sequence[Results], main: Sequence[Results]) -> Table:
         "geometric mean with its 95 % interval; 1 where it changes nothing."
     )
     return Table("What another assumption changes", head, tuple(rows), note)
+
+
+def _signals(study: Signals) -> Table:
+    """Table 2 of liu2019 beside ours."""
+    head = ["method"]
+    for channel in CHANNELS:
+        head += [f"{channel} paper", f"{channel} ours"]
+    rows = []
+    for name, ours in study.ratios.items():
+        theirs = SNR.get(name, (math.nan,) * len(CHANNELS))
+        cells = [cell for pair in zip(theirs, ours, strict=True) for cell in map(number, pair)]
+        rows.append((name, *cells))
+    note = (
+        "SNR [dB], ours 10 lg of the power of the true signal over that of what is not it, means left in, so "
+        "the weight on the vertical channel counts as signal; the paper does not define its own. Whole "
+        "record, which sees the future."
+    )
+    return Table("Table 2, signal-to-noise ratio", tuple(head), tuple(rows), note)
 
 
 def _varied(aside: Results, main: Sequence[Results]) -> Results:

@@ -316,5 +316,5 @@ PAPER: Final = Paper(
         "RMS of the pseudo-position itself (1.440, 0.717, 0.561 m in test 1) is not scored: what is scored "
         "is the solution that it makes.",
     ),
-    figures=("fitness", "convergence"),
+    studies=("fitness",),
 )

@@ -224,5 +224,5 @@ PAPER: Final = Paper(
         "m, and what the network does not know of it is more than the INS strays; with a calibrated R it is "
         "weighed as what it is, and does no harm and no good.",
     ),
-    figures=("convergence",),
+    studies=("convergence",),
 )

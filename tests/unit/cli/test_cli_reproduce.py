@@ -19,7 +19,7 @@ def quick(monkeypatch):
     one, road = paper.experiments[0], paper.experiments[-1]
     methods = tuple(m for m in one.methods if m.name in ("INS-only", model.OURS))
     road = replace(road, methods=methods, road=(model.Window("81 s", 0.0, 15.0),), claims=())
-    short = replace(paper, experiments=(replace(one, methods=methods), road))
+    short = replace(paper, experiments=(replace(one, methods=methods), road), studies=())
     monkeypatch.setattr("gapless.papers.tan2015.PAPER", short)
     return short
 
