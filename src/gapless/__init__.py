@@ -119,7 +119,8 @@ _HOMES: Final = {
     "sweeps.conduct": ("sweep",),
     "sweeps.store": ("read_sweep",),
     "systems.fuse": ("fuse",),
-    "systems.recipe": ("System", "load_system"),
+    "systems.library": ("load_system",),
+    "systems.recipe": ("System",),
     "systems.smooth": ("smooth",),
     "systems.vehicle": ("vehicle_attitude",),
 }

@@ -15,6 +15,7 @@ from gapless.events import EPS, Event, ImuBlock, Motion, Reading
 from gapless.filters.consider import Wander
 from gapless.inertial import propagate as at
 from gapless.inertial.belief import Belief, inject
+from gapless.inertial.cubature import propagate_points
 from gapless.inertial.pieces import GAP, pieces, without_holes
 from gapless.journal import Journal
 from gapless.measurements.base import Observation
@@ -57,6 +58,7 @@ class Navigator:
         aligner = settings.aligner.copy()
         self._state = State(belief, rules, constraints, bridges, aligner, wander, settings.noise)
         self._past = Past(settings.lateness)
+        self._propagate = propagate_points if settings.cubature else at.propagate
         self.dropped = 0
         self.tape: Tape | None = None
 
@@ -212,7 +214,7 @@ class Navigator:
         while first < last:
             end = self._next_row(block, first, last) if often else last
             flush = due and end == last
-            first = at.propagate(
+            first = self._propagate(
                 b.x, b.memory, s.layout.width, b.p, b.scratch, b.error, s.layout.offsets, state.noise,
                 block.time, block.dt, block.dtheta, block.dvel, first, end, s.period, s.tick, flush,
             )  # fmt: skip

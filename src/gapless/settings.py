@@ -57,6 +57,8 @@ class Settings:
         Correlation time of what a sensor's readings share [s].
     open_loop : bool
         Feed-forward: never correct the nominal state.
+    cubature : bool
+        Carry the covariance by cubature points instead of Taylor's first order.
     trail : float
         Seconds of past velocity that a sensor needs.
     """
@@ -77,6 +79,7 @@ class Settings:
     misalignment: float = 0.0
     wander_time: float = 60.0
     open_loop: bool = False
+    cubature: bool = False
     trail: float = 0.0
 
     @cached_property

@@ -24,10 +24,12 @@ LAT, LON, HEIGHT, VEL, QUAT, GYRO_BIAS, ACCEL_BIAS, EXTRA = 0, 1, 2, 3, 6, 10, 1
 """Indices of the nominal state: lat, lon, h, v_n(3), q_nb(4), gyro bias(3), accel bias(3), extras."""
 TIME, PREV_THETA, PREV_VEL, PREV_DT = 0, 1, 4, 7
 COV_DT, COV_F, COV_W, COV_A = 8, 9, 12, 15
-TICK_DT, TICK_W, TICK_F = 18, 19, 22
-MEMORY_SIZE: Final = 25
+COV_START = 18
+TICK_DT, TICK_W, TICK_F = 28, 29, 32
+MEMORY_SIZE: Final = 35
 """Indices of `memory`: clock, previous increments; sums since the last covariance (specific
-force in NED, rate and specific force as measured) and since the last tick (corrected)."""
+force in NED, rate and specific force as measured), the navigation state there, which only cubature
+keeps, and sums since the last tick (corrected)."""
 ROUND: Final = 1e-7
 """Slack [s] that keeps a sum of sample intervals from missing its period by a rounding error."""
 
@@ -68,7 +70,7 @@ def propagate(
     ----------
     x : ndarray, shape (16 + extras,)
         Nominal state, changed in place.
-    memory : ndarray, shape (25,)
+    memory : ndarray, shape (35,)
         What the last sample left behind, changed in place.
     width : int
         Columns of the covariance in use (`Layout.width`).

@@ -244,6 +244,8 @@ def _decoded_estimator(node: dict[str, Any], arrays: list[Array]) -> Any:
             raise ModelError(f"{name} has no attribute {key[:40]!r} that may be set; train and save it again")
         setattr(model, key, _decoded(value, arrays))
     model._validate_params()
+    if getattr(model, "memory", None) is not None:  # a folder of pickles, read at the next fit
+        raise ModelError(f"{name} has a memory, which is not loaded; save it without")
     if name == "SVR":
         _check_svr(model)
     return model

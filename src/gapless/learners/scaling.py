@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import warnings
+from contextlib import AbstractContextManager
+from functools import cache
 from typing import Any, ClassVar, Self
 
 import numpy as np
@@ -11,6 +13,7 @@ from sklearn.exceptions import ConvergenceWarning
 from sklearn.preprocessing import MinMaxScaler
 from sklearn.utils import get_tags
 from sklearn.utils.metaestimators import available_if
+from threadpoolctl import ThreadpoolController
 
 from gapless.learners.base import Learner
 from gapless.learners.random_layer import relm
@@ -21,10 +24,29 @@ def _goes_on(scaled: Any) -> bool:
     return hasattr(scaled._chosen(), "partial_fit")
 
 
+@cache
+def _pools() -> Any:
+    return ThreadpoolController()
+
+
+def one_thread() -> AbstractContextManager[Any]:
+    """Within it the numerical libraries use one thread.
+
+    Matrices of a hundred rows are no work to share: on a busy machine a second thread made fits ten
+    to sixty times slower. And sums have an order that does not depend on the number of cores.
+
+    Returns
+    -------
+    context manager
+    """
+    limit: AbstractContextManager[Any] = _pools().limit(limits=1)
+    return limit
+
+
 class Scaled(Learner):
     """A regressor that sees inputs and targets in [-1, 1], and answers in the targets' own units.
 
-    The bounds are those of the first samples; later ones may lie beyond them.
+    The bounds are those of the first samples; later ones may lie beyond them. It learns in one thread.
 
     Parameters
     ----------
@@ -70,7 +92,8 @@ class Scaled(Learner):
         self.inputs_ = MinMaxScaler((-1.0, 1.0)).fit(X)
         self.targets_ = MinMaxScaler((-1.0, 1.0)).fit(targets)
         self.regressor_ = clone(self._chosen())
-        with warnings.catch_warnings():  # iterations are a budget: to use it up is no mishap
+        with one_thread(), warnings.catch_warnings():
+            # iterations are a budget: to use it up is no mishap
             warnings.simplefilter("ignore", ConvergenceWarning)
             self.regressor_.fit(*self._scaled(X, targets), **fit_params)
         return self
@@ -93,7 +116,8 @@ class Scaled(Learner):
         if not hasattr(self, "regressor_"):
             return self.fit(X, y, **fit_params)
         X, targets, _ = self._checked(X, y, reset=False)
-        self.regressor_.partial_fit(*self._scaled(X, targets), **fit_params)
+        with one_thread():
+            self.regressor_.partial_fit(*self._scaled(X, targets), **fit_params)
         return self
 
     def _scaled(self, X: Array, targets: Array) -> tuple[Array, Array]:

@@ -5,10 +5,12 @@ from __future__ import annotations
 from numbers import Real
 from typing import Any, ClassVar, Self
 
+import numpy as np
 from sklearn.svm import SVR
 from sklearn.utils._param_validation import Interval
 
 from gapless.learners.base import OutputByOutput
+from gapless.learners.rbf import squared_distances
 from gapless.recording import Array
 
 
@@ -49,3 +51,12 @@ class MeanLossSVR(OutputByOutput):
         own = {"C": self.C / len(X), "gamma": self.gamma, "epsilon": self.epsilon}
         self.estimators_ = [SVR(**own).fit(X, column) for column in targets.T]
         return self
+
+    def _predict(self, X: Array) -> Array:
+        return np.column_stack([self._one(svr, X) for svr in self.estimators_])
+
+    def _one(self, svr: Any, X: Array) -> Array:
+        """The kernel expansion: the library's own takes ten times as long, checking what is checked."""
+        kernel = np.exp(-self.gamma * squared_distances(X, svr.support_vectors_))
+        answer: Array = kernel @ svr.dual_coef_[0] + svr.intercept_
+        return answer

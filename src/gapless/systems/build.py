@@ -14,6 +14,7 @@ from gapless.measurements.base import Constraint, Sensor
 from gapless.measurements.gnss import Position, Velocity
 from gapless.measurements.nonholonomic import NonHolonomic
 from gapless.measurements.odometer import Odometer
+from gapless.measurements.spread import Spread
 from gapless.measurements.stillness import Stillness
 from gapless.navigator import Settings
 from gapless.recording import Array, Recording
@@ -88,6 +89,7 @@ def settings(
         trail=1.5 * system.gnss.velocity_averaging + 0.2 if system.gnss.velocity_averaging else 0.0,
         misalignment=float(imu["misalignment"]),
         wander_time=system.gnss.wander_time,
+        cubature=system.filter.moments == "cubature",
         open_loop=system.filter.correction == "feedforward",
     )
 
@@ -211,6 +213,8 @@ def _sensors(system: System, recording: Recording, angles: Array) -> dict[str, S
         ),
         "odometer": Odometer(wheel.sd, wheel.correlation, wheel.jitter, (float(angles[0]), float(angles[1]))),
     }
+    if system.filter.moments == "cubature":
+        known = {name: Spread(sensor) for name, sensor in known.items()}
     return {
         name: known[name] for name in system.sensors if name != "odometer" or recording.odometer is not None
     }

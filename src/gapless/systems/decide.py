@@ -130,15 +130,9 @@ class _FirstPass:
         floor = LOOSE if self.past.gnss.has_velocity else use.position_floor
         gnss = replace(use, jitter=jitter, position_floor=max(floor, use.position_floor))
         sensors = tuple(s for s in self.system.sensors if s != "odometer")  # it would vouch for itself
-        coarse = replace(self.system.filter, tick=0.2)
-        system = replace(
-            self.system,
-            gnss=gnss,
-            filter=coarse,
-            sensors=sensors,
-            adaptation=Adaptation(),
-            bridge=BridgeUse(),
-        )
+        coarse = replace(self.system.filter, tick=0.2, moments="taylor")
+        plain = replace(self.system, adaptation=Adaptation(), bridge=BridgeUse())
+        system = replace(plain, gnss=gnss, filter=coarse, sensors=sensors)
         navigator = Navigator(
             settings(system, self.past, self.offsets, _given_mounting(system), self.density, coarse.tick)
         )

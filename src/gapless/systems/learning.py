@@ -24,8 +24,7 @@ class BridgeUse(Struct, forbid_unknown_fields=True, frozen=True):
     `increment` learns the way that GNSS goes from epoch to epoch. `features` are shown now and
     `lags` - 1 epochs back, with `window` past errors; `reference` and `learns` say of what error.
     `noise` is the last fix's (as in the papers) or calibrated on held-out epochs. It trains on the
-    last `samples` epochs at least `interval` seconds apart, when an outage begins or `every` so many
-    seconds, and leaves out `purge` epochs between those trained on and those held out.
+    last `samples` epochs at least `interval` seconds apart, at an outage's onset or every `train` seconds, and leaves out `purge` epochs between those trained on and those held out.
     """
 
     model: Literal["none", "error", "increment"] = "none"
@@ -35,11 +34,11 @@ class BridgeUse(Struct, forbid_unknown_fields=True, frozen=True):
     reference: Literal["gnss", "filter"] = "gnss"
     learns: tuple[Literal["position", "velocity", "attitude"], ...] = ("position", "velocity")
     axes: Literal[2, 3] = 2
-    reset: Positive = math.inf
+    reset: Positive | Literal["never"] = "never"
     noise: Literal["filter", "calibrated"] = "filter"
     samples: Count = 300
     least: Count = 30
-    every: Positive = math.inf
+    train: Positive | Literal["onset"] = "onset"
     interval: NonNegative = 1.0
     purge: WholeNumber = 5
 
@@ -124,10 +123,14 @@ def bridges(
             lambda: make(who.name, who.parameters, who.seed),
             heard,
             CalibratedNoise() if use.noise == "calibrated" else FilterNoise(),
-            Schedule(use.samples, use.least, use.every, use.interval, use.purge, lateness),
-            Shadow(use.reset),
+            Schedule(use.samples, use.least, _seconds(use.train), use.interval, use.purge, lateness),
+            Shadow(_seconds(use.reset)),
         ),
     )
+
+
+def _seconds(value: float | str) -> float:
+    return math.inf if isinstance(value, str) else value
 
 
 def _model(use: BridgeUse, sensors: Mapping[str, Sensor]) -> Model:

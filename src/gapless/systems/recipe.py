@@ -41,11 +41,11 @@ class Imu(Struct, forbid_unknown_fields=True, frozen=True):
 
 
 class Filter(Struct, forbid_unknown_fields=True, frozen=True):
-    """States beyond the fifteen, the correction's way, and how often things are done."""
+    """States beyond the fifteen, the correction's way, how moments pass, and how often things are done."""
 
     states: tuple[str, ...] = ("gyro_scale",)
-    moments: Literal["taylor", "cubature"] = "taylor"
     correction: Literal["feedback", "feedforward"] = "feedback"
+    moments: Literal["taylor", "cubature"] = "taylor"
     covariance_period: Annotated[float, Meta(ge=0.0, le=0.1)] = 0.05
     tick: Annotated[float, Meta(ge=0.05, le=1.0)] = 0.1
 

@@ -14,7 +14,7 @@ from gapless.scenarios import plan
 from gapless.simulate import Receiver, simulate
 from gapless.systems import smooth as module
 from gapless.systems.fuse import fuse
-from gapless.systems.recipe import Clock, System
+from gapless.systems.recipe import Clock, System, parse
 from gapless.systems.smooth import smooth
 
 WHITE = Receiver(
@@ -105,3 +105,30 @@ def test_what_it_cannot_do_is_said(drive):
 
 def test_it_says_that_it_looked_back(drive):
     assert smooth(drive, HONEST).decisions[0].name == "smoothing"
+
+
+def recipe(text):
+    return parse(text + "\n[clock]\nposition = 0.0\nvelocity = 0.0\n", "recipe")
+
+
+def test_a_variational_cubature_smoother_is_a_recipe(drive):
+    """VB-ACKS of georges2015, on a drive whose fixes are three times worse than they state."""
+    worse = replace(drive, gnss=replace(drive.gnss, sd_position=drive.gnss.sd_position / 3.0))
+    rmse = {}
+    for name, rules in {"crts": '["gate"]', "vb-acks": '["variational"]'}.items():
+        system = recipe(f'constraints = []\n[filter]\nmoments = "cubature"\n[adaptation]\ngnss = {rules}')
+        for f in (fuse, smooth):
+            error, _ = errors(f(worse, system), worse)
+            rmse[name, f.__name__] = np.sqrt(np.mean(np.square(error[300:, :2])))
+    assert rmse["vb-acks", "smooth"] < rmse["vb-acks", "fuse"]
+    assert rmse["crts", "smooth"] < rmse["crts", "fuse"]
+    assert rmse["vb-acks", "fuse"] < rmse["crts", "fuse"]
+
+
+def test_a_fading_filter_is_smoothed_and_an_improved_one_refused(drive):
+    fading = recipe('[adaptation]\ngnss = ["fading", "gate"]')
+    error, _ = errors(smooth(drive, fading), drive)
+    assert np.isfinite(error).all()
+    assert np.sqrt(np.mean(np.square(error[300:, :2]))) < 1.5
+    with pytest.raises(ConfigError, match=r"improved_fading does not take; leave it out of adaptation\.gnss"):
+        smooth(drive, recipe('[adaptation]\ngnss = ["improved_fading"]'))
