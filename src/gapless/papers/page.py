@@ -82,7 +82,7 @@ def page(done: Reproduction, told: Sequence[Table], figures: Mapping[str, bytes]
         tiles=_tiles(done),
         body=body,
         data={},
-        scripts=(),
+        scripts=("paper/main.js",),
     )
     return render(content)
 

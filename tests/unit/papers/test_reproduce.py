@@ -77,6 +77,7 @@ def test_files_say_the_same(done, tmp_path):
         assert "An idea." in text
         assert summary(done) in text
     assert page.count("data:image/png") == len(drawn)
+    assert 'setTheme("")' in page
     for name in drawn:
         assert f"figures/{name}.png" in readme
 
