@@ -1,7 +1,7 @@
 import pytest
 
 from gapless.errors import ConfigError
-from gapless.systems.adjust import with_clock, without
+from gapless.systems.adjust import named, with_clock, without
 from gapless.systems.library import load
 from gapless.systems.recipe import System
 
