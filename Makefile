@@ -31,11 +31,14 @@ browser:  ## a Chromium for the tests of pages: found, or installed where that i
 	DEBIAN_FRONTEND=noninteractive apt-get -qq install --no-install-recommends chromium fonts-liberation >/dev/null; } || \
 	echo "no Chromium was found, and none can be installed here: tests of pages are skipped"
 
-bench: $(VENV)/.dev  ## the kernel and the whole process against the same work in C; how long learners train
+bench: $(VENV)/.dev  ## speed as ratios: the kernel and the whole process against C, learners, denoising, bridges; how long learners train
 	$(BIN)/python benchmarks/kernel.py
 	$(BIN)/python benchmarks/process.py
 	$(BIN)/python benchmarks/page.py
+	$(BIN)/python benchmarks/cubature.py
+	$(BIN)/python benchmarks/denoise.py
 	$(BIN)/python benchmarks/learners.py --genetic
+	$(BIN)/python benchmarks/bridges.py
 
 docs: $(VENV)/.dev  ## run the README's code again; its output, picture and tables follow
 	$(BIN)/python docs/refresh.py

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from dataclasses import replace
 from types import MappingProxyType
@@ -160,7 +159,7 @@ PAPER: Final = Paper(
         _aside(
             "never reset",
             "The INS that is learned from is never set right, as in the paper, instead of once a minute.",
-            {"bridge.reset": math.inf},
+            {"bridge.reset": "never"},
         ),
         _aside(
             "calibrated R",

@@ -21,6 +21,13 @@ PARTS: Final = {"bridge": BridgeUse(), "denoise": DenoiseUse()}
 """Parts that a system can do without, and what is left then."""
 
 
+ADDED: Final[dict[str, dict[str, Any]]] = {
+    "constraints": {"constraints": System().constraints},
+    "calibrated": {"bridge.noise": "calibrated"},
+}
+"""What can be added to a system by name, and the keys that it changes."""
+
+
 def has(system: System, part: str) -> bool:
     """Whether a system has a bridge, or denoises.
 
@@ -43,9 +50,9 @@ def named(text: str) -> System:
     Parameters
     ----------
     text : str
-        A built-in name or a TOML file; then any of "-NAME", as for `without`, and "+constraints":
+        A built-in name or a TOML file; then any of "-NAME", as for `without`, and of `ADDED`:
         "wang2018-bridge" is its filter alone, "wang2018+constraints" what it does for a filter that
-        knows what every car obeys.
+        knows what every car obeys, "wang2018+calibrated" what with a noise from held-out epochs.
 
     Returns
     -------
@@ -57,7 +64,7 @@ def named(text: str) -> System:
         If there is no such recipe or part.
     """
     out: list[str] = []
-    base = text.removesuffix("+constraints")
+    base, *added = text.split("+")
     while base not in names():
         shorter, dash, last = base.rpartition("-")
         if not dash or last not in (*_choices("constraints"), *_choices("sensors"), *PARTS):
@@ -66,8 +73,10 @@ def named(text: str) -> System:
     system = load(base)
     for name in out:
         system = replace(without(system, name), name=f"{system.name}-{name}")
-    if text.endswith("+constraints"):
-        system = replace(system, constraints=System().constraints, name=f"{system.name}+constraints")
+    for name in added:
+        if name not in ADDED:
+            raise ConfigError(f"{text}: there is no {name!r} to add; choose from {', '.join(ADDED)}")
+        system = replace(changed(system, ADDED[name], text), name=f"{system.name}+{name}")
     return system
 
 

@@ -32,3 +32,20 @@ def test_clock_is_checked_as_in_a_recipe():
             with_clock(System(), "velocity", bad)
     with pytest.raises(ConfigError, match="position, velocity, odometer"):
         with_clock(System(), "radar", 0.0)
+
+
+def test_named_takes_out_and_puts_in():
+    system = named("wang2018-bridge+constraints")
+    assert system.name == "wang2018-bridge+constraints"
+    assert system.bridge.model == "none"
+    assert system.constraints == System().constraints
+    assert system.adaptation.gnss == named("wang2018").adaptation.gnss
+    assert named("wang2018-elm").learner.name == "elm"
+    assert named("liu2019-elm-denoise").denoise.method == "none"
+    assert named("tan2015+calibrated").bridge.noise == "calibrated"
+
+
+@pytest.mark.parametrize("text", ["wang2018-wheels", "nobody", "ins+wheels", "-bridge", "+constraints"])
+def test_named_says_what_there_is(text):
+    with pytest.raises(ConfigError, match="choose from"):
+        named(text)
