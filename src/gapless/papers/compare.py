@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Hashable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Final
 
@@ -139,9 +139,18 @@ def _ratio(results: Results, claim: Claim) -> Ratio:
     return Ratio(claim, count, found, verdict(claim.ratio, found) if count else NOT_RUN)
 
 
-def _paired(first: Sequence[Sample], second: Sequence[Sample], key: str) -> tuple[int, Interval]:
+def _place(sample: Sample) -> Hashable:
+    return sample.drive, sample.start
+
+
+def _paired(
+    first: Sequence[Sample],
+    second: Sequence[Sample],
+    key: str,
+    place: Callable[[Sample], Hashable] = _place,
+) -> tuple[int, Interval]:
     """Geometric mean of first over second in the same windows of the same drives."""
-    a, b = ({_place(s): s for s in samples} for samples in (first, second))
+    a, b = ({place(s): s for s in samples} for samples in (first, second))
     both = [k for k in a if k in b and _both(a[k], b[k], key)]
     rows = [a[k] for k in both]
     found = pair(_values(rows, key), _values([b[k] for k in both], key), order(*_places(rows)))
@@ -185,7 +194,7 @@ def beside(aside: Results, main: Results, method: str, where: str, key: str) -> 
     ratio : Interval
         Geometric mean; NaN without any.
     """
-    return _paired(aside.of(method, where), main.of(method, where), key)
+    return _paired(aside.of(method, where), main.of(method, where), key, lambda s: s.drive)
 
 
 def rankings(results: Results) -> list[Ranking]:
@@ -215,10 +224,6 @@ def rankings(results: Results) -> list[Ranking]:
 
 def _ranked(values: dict[str, float]) -> tuple[str, ...]:
     return tuple(sorted(values, key=lambda name: values[name]))
-
-
-def _place(sample: Sample) -> tuple[str, float]:
-    return sample.drive, sample.start
 
 
 def _values(samples: Sequence[Sample], key: str) -> Array:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 import numpy as np
 
@@ -24,6 +24,10 @@ from gapless.systems.fuse import fuse
 from gapless.systems.library import load
 from gapless.systems.recipe import System
 from gapless.systems.smooth import smooth
+
+BROKEN: Final = (GaplessError, ValueError, ArithmeticError)
+"""What ends a method on a drive, and not the others: it cannot run, or its numbers have run away. A method
+that is told to believe its learner diverges now and then, and that is a result too."""
 
 
 class Ready(NamedTuple):
@@ -216,14 +220,30 @@ def execute(job: Job) -> Outcome:
     for method, system in job.ready:
         try:
             solution = _navigate(method, system, recording, drive, job.seed)
-        except GaplessError as error:
-            outcome.failed[method.name] = str(error)
+        except BROKEN as error:
+            outcome.failed[method.name] = told(error)
             continue
         scores = score(solution, recording)
         keep(outcome, job, method, recording, scores, drive.windows)
     if job.shown:
         outcome.tracks.append(_track(job.experiment.name, recording))
     return outcome
+
+
+def told(error: Exception) -> str:
+    """Why a method has no row, in a line.
+
+    Parameters
+    ----------
+    error : Exception
+        One of `BROKEN`.
+
+    Returns
+    -------
+    str
+    """
+    first = next(iter(str(error).splitlines()), "")
+    return str(error) if isinstance(error, GaplessError) else f"{type(error).__name__}: {first}"
 
 
 def _navigate(method: Method, system: System, recording: Recording, drive: Drive, seed: int) -> Solution:

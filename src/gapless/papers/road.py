@@ -5,11 +5,10 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Final
 
-from gapless.errors import GaplessError
 from gapless.evaluation import score
 from gapless.laboratory.study import ladder
 from gapless.motion import first_motion
-from gapless.papers.jobs import Job, Outcome, Ready, keep, navigate
+from gapless.papers.jobs import BROKEN, Job, Outcome, Ready, keep, navigate, told
 from gapless.papers.model import Window
 from gapless.recording import Recording
 from gapless.scenarios import Outage
@@ -46,8 +45,8 @@ def execute(job: Job) -> Outcome:
     for ready in job.ready:
         try:
             _one(outcome, job, ready, recording)
-        except GaplessError as error:
-            outcome.failed[ready.method.name] = str(error)
+        except BROKEN as error:
+            outcome.failed[ready.method.name] = told(error)
     return outcome
 
 

@@ -313,6 +313,9 @@ PAPER: Final = Paper(
         "INS-only drifts 27 m in 120 s in the paper: the sensors of a SPAN-CPT with the biases of its "
         "datasheet do worse or better as well as the biases were found before the outage, which the run-up "
         "decides.",
+        "Test 3: on an arc of constant turn rate force and turn rate stay the same while the heading goes "
+        "round, so the same features stand for different increments, on our curve by up to sixty degrees. "
+        "The curve of the paper is not told; no search of parameters can mend what the features do not hold.",
         "RMS of the pseudo-position itself (1.440, 0.717, 0.561 m in test 1) is not scored: what is scored "
         "is the solution that it makes.",
     ),

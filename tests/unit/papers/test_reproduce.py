@@ -20,6 +20,7 @@ from gapless.papers.page import summary
 from gapless.papers.start import fuse_from
 from gapless.papers.tables import number, tables
 from gapless.systems.adjust import changed
+from gapless.systems.fuse import fuse
 from gapless.systems.library import load
 from gapless.units import DEG
 
@@ -102,6 +103,21 @@ def test_a_method_that_cannot_run_is_told_of_and_the_others_go_on():
     assert set(outcome.failed) == {"INS", "car"}
     assert "no heading to start from" in outcome.failed["INS"]
     assert not outcome.samples
+
+
+def test_numbers_that_run_away_end_their_method_alone(monkeypatch):
+    from gapless.papers import jobs
+
+    def diverges(method, system, recording, outages):
+        if method.name == "car":
+            raise ValueError("Input X contains NaN.\nand much advice")
+        return fuse(recording, system, outages)
+
+    monkeypatch.setattr(jobs, "navigate", diverges)
+    ready, _ = prepare(experiment())
+    outcome = execute(Job(experiment(), ready, 1))
+    assert outcome.failed == {"car": "ValueError: Input X contains NaN."}
+    assert {s.method for s in outcome.samples} == {"INS"}
 
 
 def test_nothing_to_run_is_refused(small):
