@@ -178,10 +178,11 @@ class Navigator:
             if start is not None or not state.aligned:
                 return
         observation = self.settings.sensors[reading.channel].observe(state.belief, reading)
-        if self._update(reading.channel, reading.time, observation):
+        used = self._update(reading.channel, reading.time, observation)
+        if used:
             state.heard[reading.channel] = reading.time
-            for bridge in state.bridges:
-                bridge.hear(state.belief, reading)
+        for bridge in state.bridges:
+            bridge.hear(state.belief, reading, used)
 
     # --- samples --------------------------------------------------------------------------------
 

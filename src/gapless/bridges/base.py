@@ -31,14 +31,16 @@ class Bridge(Protocol):
     same data would give other bits elsewhere.
     """
 
-    def hear(self, belief: Belief, reading: Reading) -> None:
-        """Learn from a reading that the filter has just used.
+    def hear(self, belief: Belief, reading: Reading, used: bool) -> None:
+        """Learn from a reading.
 
         Parameters
         ----------
         belief : Belief
             After the update.
         reading : Reading
+        used : bool
+            False where the filter rejected it: GNSS speaks, and nothing is to be learned from it.
         """
         ...
 

@@ -132,6 +132,7 @@ class LearnedBridge:
     heard: dict[str, Array] = field(default_factory=dict)
     fix: Array = field(default_factory=lambda: NOWHERE)
     fix_time: float = math.nan
+    spoke: float = math.nan
     velocity_error: tuple[float, Array] = (-math.inf, NOWHERE)
     felt: Array = field(default_factory=lambda: np.zeros(6))
     felt_before: Array = field(default_factory=lambda: np.zeros(6))
@@ -141,9 +142,15 @@ class LearnedBridge:
     began: float = math.nan
     count: int = 0
 
-    def hear(self, belief: Belief, reading: Reading) -> None:
-        """See `Bridge`."""
+    def hear(self, belief: Belief, reading: Reading, used: bool) -> None:
+        """See `Bridge`: a rejected fix breaks the silence all the same, or a filter that went wrong on a
+        bridge's word would listen to nothing else.
+        """
         if reading.channel not in self.sensors:
+            return
+        if reading.channel == "position":
+            self.spoke = reading.time
+        if not used:
             return
         seen = self.sensors[reading.channel].observe(belief, reading)
         self.heard[reading.channel] = seen.R
@@ -163,7 +170,7 @@ class LearnedBridge:
     def tick(self, belief: Belief, motion: Motion) -> tuple[Saying, ...]:
         """See `Bridge`."""
         self.felt = self.felt + motion.felt * motion.dt
-        silent = motion.time - self.fix_time > self._patience()
+        silent = motion.time - self.spoke > self._patience()
         if not silent:
             self._keep_up(belief, motion)
             return ()
@@ -179,7 +186,7 @@ class LearnedBridge:
 
     def lost(self) -> None:
         """See `Bridge`."""
-        self.before = self.fix_time = self.shadow.began = math.nan
+        self.before = self.fix_time = self.spoke = self.shadow.began = math.nan
         self.course, self.velocity_error = None, (-math.inf, NOWHERE)
 
     def decisions(self, start: float) -> tuple[Decision, ...]:

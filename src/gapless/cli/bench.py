@@ -155,11 +155,9 @@ def _sources(
 
 
 def _methods(systems: str) -> Sequence[Method]:
-    from gapless.cli.options import scipy_again
     from gapless.laboratory.recipes import Recipe, smoothed
     from gapless.systems.adjust import named
 
-    scipy_again()
     names = [name.strip() for name in systems.split(",")]
     return tuple(
         smoothed(named("constraints")) if name == "smoothed" else Recipe(named(name)) for name in names

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
@@ -34,7 +33,7 @@ _RECIPE = (
     click.option(
         "--system", metavar="NAME",
         help="Built-in recipe (`gapless systems` lists them; constraints is the one used), perhaps with "
-        "-PART or +constraints behind it: wang2018-bridge.",
+        "-PART, +constraints or +calibrated behind it: wang2018-bridge.",
     ),
     click.option(
         "--config", type=click.Path(path_type=Path), metavar="FILE",
@@ -150,15 +149,8 @@ def job(
         from gapless.navigator import load_kernels  # what navigates takes as long to load
 
         load_kernels()
-        scipy_again()
         found = reading.result()
     return Job(found, recipe, plan([*outage, *outages], found), causal)
-
-
-def scipy_again() -> None:
-    """Let SciPy be found from now on: numba has looked for it, and scikit-learn needs it."""
-    if "scipy" in sys.modules and sys.modules["scipy"] is None:
-        del sys.modules["scipy"]
 
 
 def _system(name: str | None, config: Path | None, without: Sequence[str], clock: Sequence[str]) -> System:

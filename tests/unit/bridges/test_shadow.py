@@ -25,7 +25,7 @@ class _Listener:
     def __init__(self, start):
         self.start, self.shadow, self.apart = start, Shadow(), []
 
-    def hear(self, belief, reading):
+    def hear(self, belief, reading, used):
         pass
 
     def tick(self, belief, motion):
