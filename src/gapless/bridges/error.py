@@ -73,38 +73,39 @@ class ErrorModel:
     learns: tuple[str, ...]
     axes: int
 
-    @property
-    def memoryless(self) -> bool:
-        """Whether the shadow may start anew when an outage begins: no past error is asked for."""
-        return self.window == 0
-
     def pairs(self, epochs: Sequence[Epoch]) -> tuple[Array, Array]:
-        """See `Model`."""
-        rows, targets, run = [], [], 0
+        """See `Model`: before its start the shadow had no error."""
+        rows, targets, run, whole = [], [], 0, False
         need = max(self.lags - 1, self.window)
         known = [self._error(e) for e in epochs]
         for i, epoch in enumerate(epochs):
-            run = run + 1 if i and follows(epoch, epochs[i - 1]) else 0
-            if run >= need:
-                recent, past = epochs[max(0, i - self.lags + 1) : i], known[i - self.window : i]
-                rows.append(self.row(Course(tuple(recent), tuple(past), known[i]), epoch))
+            if not (i and follows(epoch, epochs[i - 1])):
+                run, whole = 0, bool(i) and epoch.segment != epochs[i - 1].segment
+            else:
+                run += 1
+            if whole or run >= need:
+                course = self._course(epochs[i - min(run, need) : i], known[i - min(run, need) : i])
+                rows.append(self.row(course, epoch))
                 targets.append(known[i])
         x, y = np.array(rows).reshape(len(rows), -1), np.array(targets).reshape(len(rows), -1)
         good = np.isfinite(x).all(axis=1) & np.isfinite(y).all(axis=1)
         return x[good], y[good]
 
     def begin(self, epochs: Sequence[Epoch], fix: Array) -> Course:
-        """See `Model`: where there are too few errors of this segment, those before its start are none."""
-        tail = [epochs[-1]]
+        """See `Model`: from a new start there are no errors, and else those of this segment."""
+        tail = list(epochs[-1:])
         for later, earlier in pairwise(reversed(epochs)):
             if not follows(later, earlier):
                 break
             tail.insert(0, earlier)
-        past = [np.nan_to_num(self._error(e)) for e in tail][-self.window :] if self.window else []
-        missing = self.window - len(past)
-        none = np.zeros(self._error(epochs[-1]).size)
-        recent = tail[-(self.lags - 1) :] if self.lags > 1 else []
-        return Course(tuple(recent), tuple([none] * missing + past), none)
+        return self._course(tail, [np.nan_to_num(self._error(e)) for e in tail])
+
+    def _course(self, epochs: Sequence[Epoch], errors: Sequence[Array]) -> Course:
+        """A course after some epochs in a row, the errors that are missing being none."""
+        none = np.zeros(sum(self._size(name) for name in self.learns))
+        past = errors[len(errors) - min(len(errors), self.window) :]
+        recent = epochs[len(epochs) - min(len(epochs), self.lags - 1) :]
+        return Course(tuple(recent), (none,) * (self.window - len(past)) + tuple(past), none)
 
     def row(self, course: Course, epoch: Epoch) -> Array:
         """See `Model`."""

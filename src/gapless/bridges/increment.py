@@ -55,7 +55,6 @@ class IncrementModel:
     features: tuple[str, ...]
     axes: int
     sensor: Sensor
-    memoryless: bool = True
 
     def pairs(self, epochs: Sequence[Epoch]) -> tuple[Array, Array]:
         """See `Model`."""

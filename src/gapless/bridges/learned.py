@@ -143,8 +143,9 @@ class LearnedBridge:
     count: int = 0
 
     def hear(self, belief: Belief, reading: Reading, used: bool) -> None:
-        """See `Bridge`: a rejected fix breaks the silence all the same, or a filter that went wrong on a
-        bridge's word would listen to nothing else.
+        """See `Bridge`; a rejected fix breaks the silence too.
+
+        A filter that went wrong on a bridge's word would else listen to nothing but the bridge.
         """
         if reading.channel not in self.sensors:
             return
@@ -290,9 +291,10 @@ class LearnedBridge:
             self._train(time)
         if self.trained is None:
             return
-        if self.model.memoryless and math.isfinite(self.shadow.interval):
+        anew = math.isfinite(self.shadow.interval)
+        if anew:  # so it is never older than those that were learned from, in an outage as long as they
             self.shadow.restart(belief, time)
-        self.course = self.model.begin(self.epochs, self.fix)
+        self.course = self.model.begin([] if anew else self.epochs, self.fix)
         self.felt_before, self.before = self.felt_fix, self.fix_time
 
     def _speak(self, belief: Belief, time: float) -> tuple[Saying, ...]:

@@ -32,11 +32,6 @@ class Model(Protocol):
     What changes during an outage is a `course`, a value that is replaced and never changed.
     """
 
-    @property
-    def memoryless(self) -> bool:
-        """Whether nothing of it needs the shadow to go on where an outage begins."""
-        ...
-
     def pairs(self, epochs: Sequence[Epoch]) -> tuple[Array, Array]:
         """Rows to learn from.
 
@@ -57,7 +52,7 @@ class Model(Protocol):
         Parameters
         ----------
         epochs : sequence of Epoch
-            All that were heard, at least one.
+            Those that the shadow comes from, the last first to be gone on from; none where it starts anew.
         fix : ndarray, shape (3,)
             The last fix.
 

@@ -173,6 +173,8 @@ def _growth(rows: Array) -> tuple[float, float]:
 def rehearse(model: Model, predict: Predict, epochs: Sequence[Epoch], horizon: int) -> list[Missed]:
     """Let a trained learner speak through stretches that it was not trained on, as in an outage.
 
+    As in one, each begins where the shadow started anew, if it did.
+
     Parameters
     ----------
     model : Model
@@ -187,11 +189,12 @@ def rehearse(model: Model, predict: Predict, epochs: Sequence[Epoch], horizon: i
     list of Missed
     """
     missed = []
-    for first in range(1, max(2, len(epochs) - 4), max(1, horizon // 2)):
-        course = model.begin(epochs[:first], epochs[first - 1].fix)
-        start = epochs[first - 1].time
+    anew = [k for k in range(1, len(epochs)) if epochs[k].segment != epochs[k - 1].segment]
+    for first in anew or range(1, max(2, len(epochs) - 4), max(1, horizon // 2)):
+        course = model.begin([] if anew else epochs[:first], epochs[first - 1].fix)
+        start, segment = epochs[first - 1].time, epochs[first].segment
         for epoch in epochs[first : first + horizon]:
-            if np.isnan(epoch.dt):
+            if np.isnan(epoch.dt) or epoch.segment != segment:
                 break
             y = predict(model.row(course, epoch)[None, :])[0]
             course = model.carry(course, epoch, y)

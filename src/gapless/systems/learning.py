@@ -156,7 +156,7 @@ def _saved(path: str, model: Model, use: BridgeUse) -> Trained | None:
         data = Path(path).read_bytes()
     except OSError as error:
         raise ConfigError(f"learner.model: {path}: {error.strerror or error}") from None
-    row = model.row(model.begin([unknown()], np.zeros(3)), unknown())
+    row = model.row(model.begin([], np.zeros(3)), unknown())
     return Trained(loads(data, path, len(row)), FilterNoise(), -math.inf, 0)
 
 

@@ -43,9 +43,13 @@ def test_rows_of_an_error_model_hold_nothing_of_the_epoch_that_they_ask_for():
 def test_no_window_reaches_over_a_new_start_of_the_shadow_or_a_gap():
     epochs = drive(40, segment_every=20)
     model = ErrorModel(("velocity",), 1, 5, "gnss", ("position",), 2)
-    assert len(model.pairs(epochs)[0]) == 2 * (20 - 5)
+    x, _ = model.pairs(
+        epochs
+    )  # before the first epoch nothing is known, before the second start no error was
+    assert len(x) == (20 - 5) + 20
+    assert (x[20 - 5][2:] == 0.0).all()
     epochs[10] = epochs[10]._replace(dt=np.nan)
-    assert len(model.pairs(epochs)[0]) == (10 - 5) + (10 - 5) + (20 - 5)
+    assert len(model.pairs(epochs)[0]) == (10 - 5) + (10 - 5) + 20
 
 
 def test_epochs_without_an_error_are_left_out():
