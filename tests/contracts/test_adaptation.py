@@ -17,7 +17,7 @@ from gapless.filters.update import assess, correct
 from gapless.motion import displace
 from gapless.simulate import Receiver, simulate
 from gapless.systems.fuse import fuse
-from gapless.systems.recipe import parse
+from gapless.systems.library import parse
 
 ROBUST = ("gate", "chi_square", "igg3")
 """Rules that claim robustness against gross errors."""

@@ -9,7 +9,7 @@ from gapless.events import ImuBlock
 from gapless.feed import events
 from gapless.navigator import Navigator
 from gapless.scenarios import Outage, withhold
-from gapless.systems.recipe import parse
+from gapless.systems.library import parse
 
 RECIPES = {
     "cubature": '[filter]\nmoments = "cubature"',

@@ -148,9 +148,9 @@ PAPER: Final = Paper(
         "Turn-on biases: as large as the in-run figures of Table 1; their correlation time, 600 s.",
         "What is scored as real time may not see a later sample, so denoising is windowed and causal unless "
         "the recipe says otherwise; the paper denoises the whole record, which sees the outage.",
-        "Which INS velocity the network is shown in an outage. The one that its own word has corrected closes a "
-        'loop that runs away: see the experiment "corrected velocity". So it is that of an INS beside the '
-        "filter that starts anew once a minute and when the outage begins.",
+        "Which INS velocity the network is shown in an outage. The one that its own word has corrected "
+        'closes a loop that runs away: see the experiment "corrected velocity". So it is that of an INS '
+        "beside the filter that starts anew once a minute and when the outage begins.",
         "GNSS errors of 2.5 m are white at 5 Hz. Those of a real receiver last for a minute.",
     ),
     differs=(

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from epochs import ORIGIN, drive
+from made_up import ORIGIN, drive
 
 from gapless import earth
 from gapless.bridges.epochs import FEATURES, features

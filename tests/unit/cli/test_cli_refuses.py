@@ -16,7 +16,7 @@ REFUSED = {
     "outage after the end": (["{drive}", "--outage", "1000:1060"], "lasts 160 s"),
     "outages that overlap": (["{drive}", "--outage", "50:80", "--outage", "70:90"], "overlap"),
     "unknown constraint": (["{drive}", "--without", "wheels"], "choose from zero_velocity, nonholonomic"),
-    "unknown system": (["{drive}", "--system", "magic"], "choose from constraints, ins"),
+    "unknown system": (["{drive}", "--system", "magic"], "choose from aslinezhad2020"),
     "no such config": (["{drive}", "--config", "none.toml"], "none.toml"),
     "clock of nothing": (["{drive}", "--clock", "sun=1"], "choose from position, velocity, odometer"),
     "clock without a number": (["{drive}", "--clock", "position"], "write it like position=-0.15"),

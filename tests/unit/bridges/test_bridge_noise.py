@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from epochs import drive
+from made_up import drive
 
 from gapless.bridges.error import ErrorModel
 from gapless.bridges.noise import CalibratedNoise, FilterNoise, Missed, rehearse
