@@ -137,7 +137,7 @@ def test_a_copy_remembers_and_forgets_alone():
     for t in range(1, 5):
         twin.judge(told("position", float(t), np.full(3, 50.0), 1e4, 3))
     assert gate.relock.runs == {}
-    assert twin.runs["position"].length == 4
+    assert twin.relock.runs["position"].length == 4
 
 
 def test_forks_hear_only_their_own(settled):
