@@ -91,6 +91,10 @@ class Solution:
         Time of the first IMU sample [s].
     notes : tuple of Note
         What was mended in the recording.
+    learned : tuple of object
+        Fitted learners of bridges, to be saved.
+    start_sd : dict of str to ndarray, shape (k,)
+        By block, standard deviations before there were observations, where the first row knows of later ones.
     """
 
     name: str
@@ -103,6 +107,8 @@ class Solution:
     outages: tuple[tuple[float, float], ...]
     start: float
     notes: tuple[Note, ...] = field(default=())
+    learned: tuple[object, ...] = field(default=())
+    start_sd: dict[str, Array] = field(default_factory=dict)
 
     def in_outage(self, time: Array) -> NDArray[np.bool_]:
         """Which times lie in a withheld stretch.
@@ -131,7 +137,8 @@ class Observed(NamedTuple):
         "position", "velocity", "attitude", or a further block.
     axis : int
     start, end : float
-        Standard deviation at the first and at the last row, SI units.
+        Standard deviation at the first row (of the filter, where a smoother came after it) and at the last
+        one, SI units.
     ratio : float
         End over start; NaN where nothing was uncertain at the start.
     """
@@ -155,13 +162,30 @@ def observability(solution: Solution) -> tuple[Observed, ...]:
     tuple of Observed
         Axis by axis; empty without rows.
     """
-    sd = solution.trajectory.sd
-    navigation = {
-        name: sd[:, 3 * k : 3 * k + 3] for k, name in enumerate(("position", "velocity", "attitude"))
-    }
     found = []
-    for block, sds in {**navigation, **solution.states_sd}.items():
+    for block, sds in _deviations(solution).items():
         for axis in range(sds.shape[1] if len(sds) else 0):
-            start, end = float(sds[0, axis]), float(sds[-1, axis])
+            start, end = float(solution.start_sd.get(block, sds[0])[axis]), float(sds[-1, axis])
             found.append(Observed(block, axis, start, end, end / start if start > 0.0 else math.nan))
     return tuple(found)
+
+
+def first_deviations(solution: Solution) -> dict[str, Array]:
+    """Standard deviations at the first row, for `Solution.start_sd`.
+
+    Parameters
+    ----------
+    solution : Solution
+        Of a filter.
+
+    Returns
+    -------
+    dict of str to ndarray, shape (k,)
+    """
+    return {block: sds[0] for block, sds in _deviations(solution).items() if len(sds)}
+
+
+def _deviations(solution: Solution) -> dict[str, Array]:
+    sd = solution.trajectory.sd
+    names = ("position", "velocity", "attitude")
+    return {name: sd[:, 3 * k : 3 * k + 3] for k, name in enumerate(names)} | solution.states_sd

@@ -10,7 +10,8 @@ from gapless import earth
 from gapless.events import ImuBlock
 from gapless.feed import events
 from gapless.filters.adaptation.base import Innovation
-from gapless.filters.adaptation.gate import SOFT, Gate
+from gapless.filters.adaptation.gate import Gate
+from gapless.filters.adaptation.relock import SOFT
 from gapless.motion import displace
 from gapless.navigator import Navigator
 from gapless.simulate import Receiver, simulate

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from strapdown import Run, circuit
 
+from gapless.inertial import propagate as at
 from gapless.inertial.increments import split
 from gapless.recording import Imu
 from gapless.simulate.motion import Vehicle, increments, trajectory
@@ -34,9 +35,9 @@ def cut(run: Run, imu: Imu, pieces: list[int], last: int) -> list[int]:
         turn += 1
         while k < end:
             k = run.go(imu, k, end, period=0.03, tick=0.1)
-            if run.memory[18] >= 0.1 - 1e-7:
+            if run.memory[at.TICK_DT] >= 0.1 - 1e-7:
                 ticks.append(k)
-                run.memory[18:25] = 0.0
+                run.memory[at.TICK_DT :] = 0.0
     return ticks
 
 
@@ -47,14 +48,14 @@ def test_cutting_gives_the_same_bits(imu, pieces):
     assert cut(whole, imu, [last], last) == cut(parts, imu, pieces, last) == list(range(20, 4001, 20))
     for name in ("x", "memory", "p", "error"):
         assert np.array_equal(getattr(whole, name), getattr(parts, name)), name
-    assert whole.memory[8] > 0.0  # the covariance is in the middle of its period: the cut mattered
+    assert whole.memory[at.COV_DT] > 0.0  # the covariance is in the middle of its period: the cut mattered
 
 
 def test_flush_brings_the_covariance_up_to_the_sample(imu):
     """At every sample and with one flush: the same time covered, so the same bias variance."""
     run = start(extras=(), open_loop=False)
     run.go(imu, 0, 4, period=0.03, flush=True)
-    assert run.memory[8] == 0.0
+    assert run.memory[at.COV_DT] == 0.0
     assert run.P[0, 0] > 0.1
 
 

@@ -74,6 +74,16 @@ class Bridge(Protocol):
         """
         ...
 
+    def learned(self) -> object | None:
+        """What it has learned last, to be saved; None where that is nothing.
+
+        Returns
+        -------
+        object or None
+            A fitted estimator.
+        """
+        ...
+
     def copy(self) -> Self:
         """An independent bridge with the same memory.
 

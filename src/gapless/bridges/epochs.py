@@ -97,6 +97,19 @@ def features(names: Sequence[str], epoch: Epoch) -> Array:
     return np.concatenate([FEATURES[name](epoch) for name in names]) if names else np.zeros(0)
 
 
+def unknown() -> Epoch:
+    """An epoch of nothing: level, at rest, at zero, and after no other.
+
+    Returns
+    -------
+    Epoch
+    """
+    still = np.zeros(10)
+    still[6] = 1.0
+    none = np.zeros(3)
+    return Epoch(0.0, 1.0, 0, 0.0, still, none, none, none, none, np.zeros(6), np.zeros(9), none)
+
+
 def follows(epoch: Epoch, previous: Epoch) -> bool:
     """Whether an epoch is the next one of the same segment.
 

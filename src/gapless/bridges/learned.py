@@ -121,7 +121,7 @@ class LearnedBridge:
     """
 
     model: Model
-    learner: Callable[[], Regressor] | None
+    learner: Callable[[], Regressor]
     sensors: dict[str, Sensor]
     noise: Noise = field(default_factory=FilterNoise)
     schedule: Schedule = field(default_factory=Schedule)
@@ -189,6 +189,10 @@ class LearnedBridge:
             for t in self.trainings
         )
 
+    def learned(self) -> object | None:
+        """See `Bridge`."""
+        return None if self.trained is None else self.trained.learner
+
     def copy(self) -> Self:
         """See `Bridge`: values are shared, lists are not."""
         return replace(self, epochs=list(self.epochs), heard=dict(self.heard), shadow=self.shadow.copy())
@@ -243,7 +247,7 @@ class LearnedBridge:
 
     def _train(self, time: float) -> None:
         """Train on what there is, after a rehearsal on what was held out of a first training."""
-        if self.learner is None:
+        if self.trained is not None and not self.trained.rows:  # it has learned elsewhere
             return
         noise = self.noise
         if noise.held_out:
@@ -261,7 +265,7 @@ class LearnedBridge:
         cut = round((1.0 - noise.held_out) * len(self.epochs))
         older, later = self.epochs[: max(0, cut - self.schedule.purge)], self.epochs[cut:]
         x, y = self.model.pairs(older)
-        if len(x) < max(2, self.schedule.least // 2) or len(later) < 6 or self.learner is None:
+        if len(x) < max(2, self.schedule.least // 2) or len(later) < 6:
             return noise
         learner = self.learner()
         learner.fit(x, y)

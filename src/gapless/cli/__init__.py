@@ -14,6 +14,7 @@ from gapless.cli.convert import convert
 from gapless.cli.fuse import fuse
 from gapless.cli.inspect import inspect
 from gapless.cli.report import report
+from gapless.cli.reproduce import reproduce
 from gapless.cli.simulate import simulate
 from gapless.cli.sweep import sweep
 from gapless.cli.systems import systems
@@ -85,7 +86,7 @@ def gapless() -> None:
     """  # noqa: D301 - click's mark for lines that stay as they are, not a backslash
 
 
-for _verb in (inspect, fuse, systems, bench, report, simulate, convert, sweep):
+for _verb in (inspect, fuse, systems, bench, reproduce, report, simulate, convert, sweep):
     gapless.add_command(_verb)
 
 

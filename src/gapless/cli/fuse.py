@@ -52,6 +52,12 @@ def _formats(command: Callable[..., Any]) -> Callable[..., Any]:
 @click.option(
     "--smooth", is_flag=True, help="Let what came later correct what came before: for post-processing."
 )
+@click.option(
+    "--save-model",
+    type=click.Path(path_type=Path, dir_okay=False),
+    metavar="FILE",
+    help="Keep what the bridge learned, for a recipe's learner.model: arrays and JSON, nothing that runs.",
+)
 @click.option("--vehicle", is_flag=True, help="Write the attitude of the car instead of the box's.")
 @_formats
 @click.option("--no-report", is_flag=True, help="Do not write report.html.")
@@ -65,6 +71,7 @@ def fuse(
     out: Path,
     rate: float,
     smooth: bool,
+    save_model: Path | None,
     vehicle: bool,
     no_report: bool,
     background: Path | None,
@@ -84,6 +91,8 @@ def fuse(
     ground = _background(background, no_report)
     work = job(**rest)
     solution, scores = _navigate(work, rate, smooth)
+    if save_model is not None:
+        _save_model(solution, save_model)
     if vehicle:
         from gapless.systems.vehicle import vehicle_attitude
 
@@ -139,6 +148,23 @@ def _navigate(work: Job, rate: float, smooth: bool) -> tuple[Solution, Scores | 
     from gapless.evaluation import score
 
     return solution, score(solution, work.recording)
+
+
+def _save_model(solution: Solution, path: Path) -> None:
+    from gapless.errors import ConfigError
+    from gapless.io.writers.atomic import atomic
+
+    if not solution.learned:
+        raise ConfigError(
+            f"--save-model {path}: no bridge has learned; choose a --system that has one, and let an outage "
+            "begin after half a minute of fixes (--outage START:END), or set bridge.train"
+        )
+    from gapless.learners.saved import dumps
+
+    data = dumps(solution.learned[0])
+    with atomic(path) as temporary:
+        temporary.write_bytes(data)
+    click.echo(f"wrote {path}")
 
 
 def _solution_files(solution: Solution, chosen: Iterable[str]) -> dict[str, Callable[[Path], object]]:

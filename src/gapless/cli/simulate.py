@@ -22,7 +22,7 @@ from gapless.cli.options import out_option, outage_options
     default="consumer",
     show_default=True,
     metavar="NAME",
-    help="The IMU: perfect, consumer, liu2019, span-cpt, wang2018, tactical or navigation.",
+    help="The IMU: perfect, consumer, liu2019, adis16448, span-cpt, wang2018, tactical or navigation.",
 )
 @click.option(
     "--duration", type=float, default=1800.0, show_default=True, metavar="SECONDS", help="At most this long."

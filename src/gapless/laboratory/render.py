@@ -60,7 +60,7 @@ def _lines(table: Table, columns: Sequence[int]) -> str:
 
 def _words(table: Table) -> list[bool]:
     """Columns that hold words stand left."""
-    left = {"outages", "system", "label", "says", "outcome", "recordings"}
+    left = {"outages", "system", "label", "says", "outcome", "recordings", "method", "claim", "order"}
     return [name in left for name in table.head]
 
 

@@ -129,9 +129,10 @@ def _model(header: dict[str, Any], arrays: list[Array], where: str) -> Any:
         model = _decoded(header["model"], arrays)
         if model.n_features_in_ != header["features"]:
             raise ValueError("its parts disagree on the number of features")
-        wanted, answers = _decoded(header["answers"], arrays), _answers(model)
+        wanted, answers = np.asarray(_decoded(header["answers"], arrays)), _answers(model)
         # libraries of other machines round otherwise: far less than this
-        agree = np.allclose(answers, wanted, rtol=1e-6, atol=1e-6 * np.abs(wanted).max(), equal_nan=True)
+        size = np.abs(wanted[np.isfinite(wanted)]).max(initial=0.0)
+        agree = np.allclose(answers, wanted, rtol=1e-6, atol=1e-6 * size, equal_nan=True)
     except ModelError as error:
         raise ModelError(f"{where}: {error}") from None
     except Exception as error:  # whatever a damaged file makes a library say

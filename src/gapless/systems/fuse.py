@@ -239,6 +239,7 @@ def collect(
         outages=tuple((o.start, o.until) for o in outages),
         start=recording.start,
         notes=recording.notes,
+        learned=tuple(m for bridge in navigator.bridges if (m := bridge.learned()) is not None),
     )
 
 

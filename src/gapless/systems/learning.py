@@ -5,8 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from inspect import signature
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, Literal
 
+import numpy as np
 from msgspec import Struct
 
 from gapless.errors import ConfigError
@@ -14,6 +16,7 @@ from gapless.systems.values import Count, NonNegative, Positive, WholeNumber
 
 if TYPE_CHECKING:
     from gapless.bridges.base import Bridge
+    from gapless.bridges.learned import Trained
     from gapless.bridges.model import Model
     from gapless.measurements.base import Sensor
 
@@ -51,11 +54,15 @@ class BridgeUse(Struct, forbid_unknown_fields=True, frozen=True):
 
 
 class LearnerUse(Struct, forbid_unknown_fields=True, frozen=True):
-    """Who learns: a name from the registry or a scikit-learn regressor's dotted path."""
+    """Who learns: a name from the registry or a scikit-learn regressor's dotted path.
+
+    `model` is a file that `gapless fuse --save-model` wrote: it speaks, and nothing is learned here.
+    """
 
     name: str = "rvfl"
     seed: WholeNumber = 0
     parameters: dict[str, Any] = {}
+    model: str = ""
 
 
 def check(use: BridgeUse, where: str) -> None:
@@ -149,16 +156,39 @@ def bridges(
     heard = {name: sensors[name] for name in ("position", "velocity") if name in sensors}
     if "position" not in heard:
         raise ConfigError("a bridge learns from GNSS positions; add position to sensors")
+    model = _model(use, heard)
     return (
         LearnedBridge(
-            _model(use, heard),
+            model,
             lambda: make(who.name, who.parameters, who.seed),
             heard,
             CalibratedNoise() if use.noise == "calibrated" else FilterNoise(),
             Schedule(use.samples, use.least, _seconds(use.train), use.interval, use.purge, lateness),
             Shadow(_seconds(use.reset)),
+            _saved(who.model, model, use),
         ),
     )
+
+
+def _saved(path: str, model: Model, use: BridgeUse) -> Trained | None:
+    """A learner from a file that fits the bridge, or None where no file is named."""
+    if not path:
+        return None
+    from gapless.bridges.epochs import unknown
+    from gapless.bridges.learned import Trained
+    from gapless.bridges.noise import FilterNoise
+    from gapless.learners.saved import loads
+
+    if use.noise == "calibrated":
+        raise ConfigError(
+            'with learner.model nothing is held out to calibrate on; use bridge.noise = "filter"'
+        )
+    try:
+        data = Path(path).read_bytes()
+    except OSError as error:
+        raise ConfigError(f"learner.model: {path}: {error.strerror or error}") from None
+    row = model.row(model.begin([unknown()], np.zeros(3)), unknown())
+    return Trained(loads(data, path, len(row)), FilterNoise(), -math.inf, 0)
 
 
 def _seconds(value: float | str) -> float:

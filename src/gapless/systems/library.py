@@ -94,6 +94,11 @@ def checked(tables: Mapping[str, Any], where: str) -> System:
         raise ConfigError(f"{where}: filter.states names a block twice; name each once")
     if unknown:
         raise ConfigError(f"{where}: filter.states has {unknown[0]!r}; choose from {', '.join(EXTRAS)}")
+    if system.filter.moments == "cubature" and system.filter.correction == "feedforward":
+        raise ConfigError(
+            f"{where}: filter.moments = 'cubature' needs filter.correction = 'feedback': "
+            "its points surround a nominal state that is corrected"
+        )
     for kind in KINDS:
         try:
             check(kind, getattr(system.adaptation, kind))

@@ -17,7 +17,7 @@ from gapless.journal import Journal
 from gapless.navigator import Navigator, Settings
 from gapless.recording import Recording
 from gapless.scenarios import Outage
-from gapless.solution import Decision, Solution
+from gapless.solution import Decision, Solution, first_deviations
 from gapless.systems.adjust import graded
 from gapless.systems.build import stamps
 from gapless.systems.decide import decide
@@ -152,5 +152,6 @@ def _smoothed(forward: Solution, rows: list[Row], navigator: Navigator) -> Solut
         trajectory=journal.trajectory(),
         states=states,
         states_sd=sds,
+        start_sd=first_deviations(forward),
         decisions=(SMOOTHING, *forward.decisions),
     )

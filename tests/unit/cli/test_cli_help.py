@@ -5,7 +5,7 @@ import sys
 
 import pytest
 
-VERBS = ("", "inspect", "fuse", "bench", "report", "simulate", "convert", "sweep")
+VERBS = ("", "inspect", "fuse", "systems", "bench", "reproduce", "report", "simulate", "convert", "sweep")
 HEAVY = ("matplotlib", "numpy", "numba", "pyarrow", "msgspec", "pandas", "scipy", "fsspec", "distributed")
 
 

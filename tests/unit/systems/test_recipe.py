@@ -6,6 +6,7 @@ import pytest
 
 from gapless.bridges import BRIDGES
 from gapless.errors import ConfigError
+from gapless.filters.adaptation.registry import RULES
 from gapless.inertial.layout import EXTRAS
 from gapless.systems.library import load, names, parse
 from gapless.systems.recipe import System
@@ -39,6 +40,12 @@ def refused(text):
             "[bridge]\nmodel = 'error'\nwindow = 5\nparameters = {a = 1}",
             ["bridge.parameters", "error has none"],
         ),
+        ("[filter]\nmoments = 'unscented'", ["filter.moments", "unscented"]),
+        ("[filter]\nmoments = 'cubature'\ncorrection = 'feedforward'", ["filter.moments", "feedback"]),
+        ("[adaptation]\ngnss = ['gat']", ["adaptation.gnss", "'gat'", *RULES]),
+        ("[adaptation]\nbridge = ['sage_husa', 'variational']", ["adaptation.bridge", "both estimate R"]),
+        ("[adaptation.igg3]\nkeep = 9.0", ["adaptation.igg3", "drop = 5", "keep = 9"]),
+        ("[adaptation.fading]\nfactr = 1.1", ["factr", "adaptation.fading", "factor"]),
     ],
 )
 def test_a_mistake_is_named_where_it_is(text, words):

@@ -14,7 +14,8 @@ from gapless.scenarios import plan
 from gapless.simulate import Receiver, simulate
 from gapless.systems import smooth as module
 from gapless.systems.fuse import fuse
-from gapless.systems.recipe import Clock, System, parse
+from gapless.systems.library import parse
+from gapless.systems.recipe import Clock, System
 from gapless.systems.smooth import smooth
 
 WHITE = Receiver(

@@ -12,6 +12,7 @@ from gapless.simulate import Receiver, Vehicle, WheelSensor, simulate
 from gapless.solution import observability
 from gapless.systems.fuse import fuse
 from gapless.systems.library import parse
+from gapless.systems.smooth import smooth
 
 RTK = Receiver(
     position_white=(0.02, 0.02, 0.04), position_correlated=(0.0, 0.0, 0.0), velocity=(0.1, 0.1, 0.1)
@@ -71,6 +72,15 @@ def test_every_state_says_how_far_it_fell(solution):
     assert max(left["gyro_bias", 0], left["gyro_bias", 1], left["accel_bias", 0], left["lever_arm", 0]) < 0.1
     # gravity hides behind the accelerometers' bias: a disturbance of 0.5 um/s^2 is not seen
     assert min(left["gravity", axis] for axis in range(3)) > 0.8
+
+
+def test_a_smoother_is_compared_with_where_its_filter_began(drive, solution):
+    short = drive.slice(-np.inf, 150.0)
+    begun = {(o.block, o.axis): o.start for o in observability(solution)}
+    rows = observability(smooth(short, parse(RECIPE, "tan2015.toml")))
+    assert len(rows) == 27
+    # covariance steps twice as long, a first row a tick after alignment
+    assert all(o.start == pytest.approx(begun[o.block, o.axis], rel=0.05) for o in rows)
 
 
 def test_summary_page_and_terminal_tell_it(solution):

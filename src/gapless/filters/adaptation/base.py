@@ -14,7 +14,7 @@ import numpy as np
 
 from gapless.recording import Array
 
-Role = Literal["noise", "process", "test", "weight"]
+Role = Literal["noise", "process", "recovery", "test", "weight"]
 
 
 class Innovation(NamedTuple):
@@ -121,8 +121,8 @@ class Rule(Adaptation, Protocol):
     Table : type of msgspec.Struct
         Its parameters, with defaults and bounds.
     role : str
-        "noise": estimates R. "process": forgets. "test": doubts by z' S^-1 z. "weight": doubts by
-        the residual. A chain holds one of each at most.
+        "noise": estimates R. "process": forgets. "recovery": doubts the filter. "test": doubts by
+        z' S^-1 z. "weight": doubts by the residual. A chain holds one of each at most.
     bends_gain : bool
         Whether it takes another gain than the optimal one.
     reckons_optimal : bool

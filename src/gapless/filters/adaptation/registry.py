@@ -13,11 +13,13 @@ from gapless.filters.adaptation.fading import Fading
 from gapless.filters.adaptation.gate import Gate
 from gapless.filters.adaptation.igg3 import Igg3
 from gapless.filters.adaptation.improved_fading import ImprovedFading
+from gapless.filters.adaptation.relock import Relock
 from gapless.filters.adaptation.sage_husa import SageHusa
 from gapless.filters.adaptation.variational import Variational
 
 RULES: Final[dict[str, type[Rule]]] = {
     "gate": Gate,
+    "relock": Relock,
     "chi_square": ChiSquare,
     "igg3": Igg3,
     "sage_husa": SageHusa,
@@ -31,6 +33,7 @@ KINDS: Final[tuple[Kind, ...]] = get_args(Kind)
 _TWICE: Final = {
     "noise": "both estimate R, and the second would not hear what the first says",
     "process": "both make the filter forget, and would do it twice",
+    "recovery": "both doubt the filter for the same surprises",
     "test": "both test the same z' S^-1 z, and the second finds what the first has left",
     "weight": "both weigh the same residual",
 }

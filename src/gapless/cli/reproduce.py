@@ -1,0 +1,86 @@
+"""`gapless reproduce`: a paper's experiment again, its tables beside ours."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from shutil import get_terminal_size
+from typing import TYPE_CHECKING
+
+import click
+
+from gapless.cli.options import out_option
+
+if TYPE_CHECKING:
+    from gapless.papers.experiment import Reproduction
+
+
+@click.command(short_help="Run a paper's experiment again, its tables beside ours.")
+@click.argument("paper", metavar="PAPER")
+@click.argument("more", nargs=-1, type=click.Path(path_type=Path), metavar="[PATH]...")
+@click.option(
+    "--recordings", "first", multiple=True, type=click.Path(path_type=Path), metavar="PATH...",
+    help="Real recordings, for the paper's road test: folders as for gapless fuse, one after the other.",
+)  # fmt: skip
+@click.option(
+    "--seeds", type=click.IntRange(min=0), metavar="N",
+    help="Simulated drives, instead of as many as the paper is given (100 for wang2018); 0 for none.",
+)  # fmt: skip
+@click.option("--jobs", type=click.IntRange(min=1), default=2, show_default=True, help="Processes.")
+@out_option
+def reproduce(
+    paper: str, more: tuple[Path, ...], first: tuple[Path, ...], seeds: int | None, jobs: int, out: Path
+) -> None:
+    """Run the experiments of a PAPER again and put its tables beside ours.
+
+    PAPER is wang2018, liu2019, georges2015, aslinezhad2020 or tan2015. DIR receives
+    README.md and report.html, which say what differs and why, the tables, every
+    number (CSV, JSON) and the figures; files of these names are replaced.
+    """
+    from gapless.cli.output import check_folder, write_together
+
+    check_folder(out)
+
+    from gapless.cli.progress import progress
+    from gapless.laboratory.render import as_text
+    from gapless.laboratory.study import stored
+    from gapless.papers.experiment import chosen
+    from gapless.papers.experiment import reproduce as run
+    from gapless.papers.folder import FILES, writers
+    from gapless.papers.library import paper as known
+    from gapless.papers.page import summary
+    from gapless.papers.tables import tables
+
+    found, sources = known(paper), stored((*first, *more))
+    _look(first + more)
+    count = sum(n for _, n in chosen(found, seeds, sources))
+    with progress("running", count) as tell:
+        done = run(found, seeds, sources, processes=jobs, progress=tell)
+    drawn = _drawn(done)
+    arguments = {"paper": paper, "recordings": [str(p) for p in (*first, *more)], "seeds": seeds}
+    files = writers(done, arguments, drawn)
+    stale = [f"figures/{p.name}" for p in (out / "figures").glob("*.png")]
+    write_together(out, files, own=(*FILES, *stale))
+    click.echo(as_text(tables(done), get_terminal_size((140, 24)).columns))
+    click.echo(summary(done))
+    click.echo("\n".join(f"wrote {out / name}" for name in files))
+
+
+def _look(paths: tuple[Path, ...]) -> None:
+    """Refuse what is not there before hours of work are done."""
+    from gapless.errors import RecordingError
+
+    for path in paths:
+        if not path.exists():
+            raise RecordingError(f"{path}: no such file or folder; check the path")
+
+
+def _drawn(done: Reproduction) -> dict[str, bytes]:
+    """Figures, or one line that says why there are none."""
+    from gapless.errors import MissingExtraError
+    from gapless.papers.figures import figures
+
+    try:
+        return figures(done)
+    except MissingExtraError as error:
+        click.echo(f"no figures: {error}", err=True)
+        return {}

@@ -1,0 +1,304 @@
+"""One drive, all methods of an experiment: what one process does, and what it hands back."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from typing import NamedTuple
+
+import numpy as np
+
+from gapless.errors import ConfigError, GaplessError
+from gapless.evaluation import Errors, Scores, score
+from gapless.laboratory.study import Source
+from gapless.papers.measure import measure
+from gapless.papers.model import SAME_CLOCK, WHITE, Drive, Experiment, Method, Window
+from gapless.papers.start import fuse_from
+from gapless.recording import Array, Recording
+from gapless.scenarios import Outage
+from gapless.sensors import grade
+from gapless.simulate import simulate, spikes
+from gapless.solution import Solution
+from gapless.systems.adjust import changed
+from gapless.systems.fuse import fuse
+from gapless.systems.library import load
+from gapless.systems.recipe import System
+from gapless.systems.smooth import smooth
+
+
+class Ready(NamedTuple):
+    """A method with its recipe."""
+
+    method: Method
+    system: System
+
+
+@dataclass(frozen=True)
+class Sample:
+    """What was measured of a method in one window of one drive.
+
+    Parameters
+    ----------
+    experiment, drive, method, where : str
+    start, end : float
+        Of the window [s].
+    values : dict of str to float
+        From `measure`.
+    """
+
+    experiment: str
+    drive: str
+    method: str
+    where: str
+    start: float
+    end: float
+    values: dict[str, float]
+
+
+class Curve(NamedTuple):
+    """Errors through one outage.
+
+    Parameters
+    ----------
+    experiment, method, where : str
+    age : ndarray, shape (n,)
+        [s] since it began.
+    position, velocity : ndarray, shape (n, 3)
+        North, east, down [m], [m/s].
+    """
+
+    experiment: str
+    method: str
+    where: str
+    age: Array
+    position: Array
+    velocity: Array
+
+
+class Track(NamedTuple):
+    """Where one drive led.
+
+    Parameters
+    ----------
+    experiment : str
+    time : ndarray, shape (n,)
+        [s]
+    east_north, velocity : ndarray, shape (n, 2)
+        [m], [m/s], both east, north.
+    """
+
+    experiment: str
+    time: Array
+    east_north: Array
+    velocity: Array
+
+
+@dataclass(frozen=True)
+class Job:
+    """What one process is given.
+
+    Parameters
+    ----------
+    experiment : Experiment
+    ready : tuple of Ready
+    seed : int
+        Of a simulated drive.
+    source : Source, optional
+        A real recording instead.
+    shown : bool
+        Whether its curves are kept.
+    """
+
+    experiment: Experiment
+    ready: tuple[Ready, ...]
+    seed: int = 0
+    source: Source | None = None
+    shown: bool = False
+
+
+@dataclass
+class Outcome:
+    """What one process hands back.
+
+    Parameters
+    ----------
+    samples : list of Sample
+    curves : list of Curve
+    tracks : list of Track
+    failed : dict of str to str
+        By method: why it could not run on this drive.
+    """
+
+    samples: list[Sample] = field(default_factory=list)
+    curves: list[Curve] = field(default_factory=list)
+    tracks: list[Track] = field(default_factory=list)
+    failed: dict[str, str] = field(default_factory=dict)
+
+
+def prepare(experiment: Experiment) -> tuple[tuple[Ready, ...], dict[str, str]]:
+    """Recipes of an experiment's methods.
+
+    Parameters
+    ----------
+    experiment : Experiment
+
+    Returns
+    -------
+    ready : tuple of Ready
+    missing : dict of str to str
+        By method: why there is no recipe of it.
+    """
+    told = {**SAME_CLOCK, **WHITE} if experiment.drive is not None else {}
+    ready, missing = [], {}
+    for method in experiment.methods:
+        try:
+            system = changed(load(method.recipe), {**told, **method.changes}, method.recipe)
+            ready.append(Ready(method, system))
+        except ConfigError as error:
+            missing[method.name] = str(error)
+    return tuple(ready), missing
+
+
+def make(drive: Drive, seed: int) -> Recording:
+    """A drive of an experiment.
+
+    Parameters
+    ----------
+    drive : Drive
+    seed : int
+        Everything that is drawn follows from it.
+
+    Returns
+    -------
+    Recording
+    """
+    of_path, of_faults = (np.random.default_rng([seed, k]) for k in (2, 3))
+    segments = drive.segments if isinstance(drive.segments, str) else drive.segments(of_path)
+    made = simulate(
+        segments,
+        replace(grade(drive.grade), rate=drive.rate),
+        drive.duration,
+        seed,
+        receiver=drive.receiver,
+        origin=drive.origin,
+        heading=drive.heading,
+    )
+    gnss = made.gnss
+    for fault in drive.faults:
+        gnss, _ = spikes(gnss, of_faults, fault.count, fault.position, fault.velocity)
+    return replace(made, name=f"seed {seed}", gnss=gnss)
+
+
+def execute(job: Job) -> Outcome:
+    """Navigate a drive with every method, and score.
+
+    Parameters
+    ----------
+    job : Job
+
+    Returns
+    -------
+    Outcome
+
+    Raises
+    ------
+    GaplessError
+        If the recording cannot be read.
+    """
+    if job.source is not None:
+        from gapless.papers.road import execute as on_the_road
+
+        return on_the_road(job)
+    drive = job.experiment.drive
+    assert drive is not None
+    recording = make(drive, job.seed)
+    outcome = Outcome()
+    for method, system in job.ready:
+        try:
+            solution = _navigate(method, system, recording, drive, job.seed)
+        except GaplessError as error:
+            outcome.failed[method.name] = str(error)
+            continue
+        scores = score(solution, recording)
+        keep(outcome, job, method, recording, scores, drive.windows)
+    if job.shown:
+        outcome.tracks.append(_track(job.experiment.name, recording))
+    return outcome
+
+
+def _navigate(method: Method, system: System, recording: Recording, drive: Drive, seed: int) -> Solution:
+    blind = replace(recording, reference=None)
+    if drive.start is not None:
+        return fuse_from(blind, recording, system, drive.outages, drive.start.error, seed)
+    return navigate(method, system, blind, drive.outages)
+
+
+def navigate(method: Method, system: System, recording: Recording, outages: tuple[Outage, ...]) -> Solution:
+    """Run a method as its paper does: onwards, or looking back over the whole record.
+
+    Parameters
+    ----------
+    method : Method
+    system : System
+    recording : Recording
+    outages : tuple of Outage
+
+    Returns
+    -------
+    Solution
+    """
+    return (smooth if method.smoothed else fuse)(recording, system, outages)
+
+
+def keep(
+    outcome: Outcome,
+    job: Job,
+    method: Method,
+    recording: Recording,
+    scores: Scores,
+    windows: tuple[Window, ...],
+    labels: Mapping[tuple[float, float], tuple[str, ...]] | None = None,
+) -> None:
+    """Measure a method in each window and keep what comes of it.
+
+    Parameters
+    ----------
+    outcome : Outcome
+        Grows.
+    job : Job
+    method : Method
+    recording : Recording
+    scores : Scores
+        Of the run.
+    windows : tuple of Window
+        An outage that a label of the bench sets apart (standing still, before the motion) is left out.
+    labels : mapping, optional
+        By start and end of an outage; those of the scores if not given.
+    """
+    known = labels if labels is not None else {(o.start, o.end): o.labels for o in scores.outages}
+    for window in windows:
+        if known.get((window.start, window.end)):
+            continue
+        begin = recording.start + window.start
+        errors = scores.errors.slice(begin, recording.start + window.end)
+        sample = Sample(
+            job.experiment.name, recording.name, method.name, window.name, window.start, window.end,
+            measure(errors),
+        )  # fmt: skip
+        if sample.values["epochs"]:
+            outcome.samples.append(sample)
+        if job.shown and window.withheld:
+            outcome.curves.append(_curve(job.experiment.name, method.name, window.name, errors, begin))
+
+
+def _curve(experiment: str, method: str, where: str, errors: Errors, begin: float) -> Curve:
+    return Curve(experiment, method, where, errors.time - begin, errors.position, errors.velocity)
+
+
+def _track(experiment: str, recording: Recording) -> Track:
+    from gapless.motion import offset_ned
+
+    rows = recording.reference
+    assert rows is not None
+    ned = offset_ned(rows.lla, np.broadcast_to(rows.lla[0], rows.lla.shape))
+    return Track(experiment, rows.time - recording.start, ned[:, [1, 0]], rows.v_n[:, [1, 0]])

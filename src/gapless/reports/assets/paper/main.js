@@ -1,0 +1,2 @@
+// The page of a paper is words, tables and pictures: only the colours move.
+setTheme("");

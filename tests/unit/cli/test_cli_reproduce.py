@@ -1,0 +1,99 @@
+"""`gapless reproduce`: what it leaves in a folder, and what it refuses."""
+
+import json
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from gapless.papers import library, model
+
+FILES = {"README.md", "report.html", "tables.txt", "results.json", "samples.csv", "results.csv", "figures"}
+
+
+@pytest.fixture
+def quick(monkeypatch):
+    """tan2015's first test alone, with what runs in a second."""
+    paper = library.paper("tan2015")
+    one, road = paper.experiments[0], paper.experiments[-1]
+    methods = tuple(m for m in one.methods if m.name in ("INS-only", model.OURS))
+    road = replace(road, methods=methods, road=(model.Window("81 s", 0.0, 15.0),), claims=())
+    short = replace(paper, experiments=(replace(one, methods=methods), road), studies=())
+    monkeypatch.setattr("gapless.papers.tan2015.PAPER", short)
+    return short
+
+
+def test_a_folder_of_it_all(shell, quick, tmp_path):
+    out = tmp_path / "out"
+    (out / "figures").mkdir(parents=True)
+    (out / "figures" / "errors-of-an-earlier-run.png").write_bytes(b"old")
+    said = shell("reproduce", "tan2015", "--seeds", 1, "--jobs", 1, "--out", out).output
+    assert {p.name for p in out.iterdir()} == FILES
+    assert not (out / "figures" / "errors-of-an-earlier-run.png").exists()
+    assert (out / "tables.txt").read_text("utf-8").splitlines()[0] in said
+    assert "Section 5.2 and Table 3, test 1" in said
+    assert "27.0" in said  # what the paper's INS drifts
+    assert f"wrote {out / 'report.html'}" in said
+    told = json.loads((out / "results.json").read_text("utf-8"))
+    assert told["paper"] == "tan2015"
+    assert told["arguments"] == {"paper": "tan2015", "recordings": [], "seeds": 1}
+    assert "Table 3" in (out / "README.md").read_text("utf-8")
+
+
+def test_recordings_after_their_option_or_alone(shell, quick, drive, tmp_path, monkeypatch):
+    monkeypatch.setattr("gapless.papers.road.FIRST", 90.0)
+    for words in (("--recordings", drive), (drive,)):
+        out = tmp_path / str(len(words))
+        said = shell("reproduce", "tan2015", *words, "--seeds", 0, "--jobs", 1, "--out", out).output
+        assert "road: all that was run" in said
+        told = json.loads((out / "results.json").read_text("utf-8"))
+        assert [e["name"] for e in told["experiments"]] == ["road"]
+        assert told["arguments"]["recordings"] == [str(drive)]
+
+
+def test_two_processes_give_the_numbers_of_one(shell, quick, tmp_path):
+    for jobs in (1, 2):
+        shell("reproduce", "tan2015", "--seeds", 2, "--jobs", jobs, "--out", tmp_path / str(jobs))
+    one, two = ((tmp_path / n / "samples.csv").read_text("utf-8") for n in ("1", "2"))
+    assert one == two
+
+
+@pytest.mark.parametrize(
+    ("words", "says"),
+    [
+        (("wang2019",), "the papers are wang2018, liu2019"),
+        (("tan2015", "--seeds", 0), "nothing to run; give --seeds of 1 or more, or recordings"),
+        (("tan2015", "--recordings", "nowhere"), "nowhere: no such file or folder"),
+        (("tan2015", "nowhere", "elsewhere/nowhere"), "two recordings are called nowhere"),
+    ],
+)
+def test_slips_are_refused_in_a_line_and_nothing_is_left(shell, tmp_path, words, says):
+    result = shell("reproduce", *words, "--out", tmp_path / "out", code=2)
+    assert says in result.output
+    assert len(result.output.strip().splitlines()) == 1
+    assert not (tmp_path / "out").exists()
+
+
+def test_an_interrupt_leaves_nothing(shell, quick, tmp_path, monkeypatch):
+    def interrupted(job):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("gapless.papers.experiment.execute", interrupted)
+    shell("reproduce", "tan2015", "--seeds", 1, "--jobs", 1, "--out", tmp_path / "out", code=130)
+    assert not (tmp_path / "out").exists()
+
+
+def test_without_matplotlib_one_line_says_so(shell, quick, tmp_path, monkeypatch):
+    for name in [m for m in sys.modules if m.startswith("matplotlib")] or ["matplotlib"]:
+        monkeypatch.setitem(sys.modules, name, None)
+    monkeypatch.setitem(sys.modules, "matplotlib.figure", None)
+    said = shell("reproduce", "tan2015", "--seeds", 1, "--jobs", 1, "--out", tmp_path / "out").output
+    assert "no figures: matplotlib is not installed; run: pip install 'gapless[figures]'" in said
+    assert not Path(tmp_path / "out" / "figures").exists()
+    assert (tmp_path / "out" / "report.html").is_file()
+
+
+def test_help_names_the_papers(shell):
+    said = shell("reproduce", "--help").output
+    assert all(name in said for name in library.PAPERS)
