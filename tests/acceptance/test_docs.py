@@ -97,6 +97,15 @@ def test_configuration_page_has_a_recipe_that_is_one():
         assert f"`{name}`" in page
 
 
+def test_bridges_page_has_recipes_that_are_some_and_every_feature():
+    page = (DOCS / "bridges.md").read_text("utf-8")
+    recipes = re.findall(r"```toml\n(.*?)```", page, re.DOTALL)
+    assert len(recipes) == 4
+    for text in recipes:
+        parse(text, "bridges.md")
+    assert set(FEATURES) <= set(re.findall(r"`(\w+)`", page))
+
+
 def test_recordings_page_names_every_column_and_key():
     page = (DOCS / "recordings.md").read_text("utf-8")
     words = set(re.findall(r"`(\w+)`", page))
