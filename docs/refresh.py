@@ -1,4 +1,4 @@
-"""Run the pages' code again; put what it prints, the picture and the recipe's defaults in place.
+"""Run the pages' code again; put what it prints, the picture, recipes and their defaults in place.
 
 python docs/refresh.py
 """
@@ -18,6 +18,7 @@ WALKED = ("tutorial.md", "gallery/*.md")
 """Pages whose code is run."""
 CONFIGURATION = Path(__file__).parent / "configuration.md"
 _CODE = re.compile(r"```python\n(.*?)```", re.DOTALL)
+_RECIPE = re.compile(r"```toml\n.*?```", re.DOTALL)
 _ROW = re.compile(r"\| `(\w+)` \| `.*?` \|")
 _BLOCK = re.compile(r"```(\w+)\n(.*?)```", re.DOTALL)
 _PASSING = re.compile(r"^(wrote .*|\d+ outages scored in .*)\n", re.MULTILINE)
@@ -150,8 +151,26 @@ def with_defaults(page: str) -> str:
     return "".join(lines)
 
 
+def with_recipe(page: str, name: str) -> str:
+    """A paper's page with its recipe as it is today.
+
+    Parameters
+    ----------
+    page : str
+    name : str
+        Of the built-in system; without one of that name the page stays as it is.
+
+    Returns
+    -------
+    str
+    """
+    from gapless.systems.library import names, source
+
+    return _RECIPE.sub(f"```toml\n{source(name)}```", page, count=1) if name in names() else page
+
+
 def main() -> None:
-    """Output, tutorial, defaults, picture."""
+    """Output, pages whose code is run, recipes, defaults, picture."""
     printed, _ = run()
     text = README.read_text("utf-8")
     README.write_text(_OUTPUT.sub(lambda m: m[1] + printed + m[3], text, count=1), "utf-8")
@@ -160,6 +179,9 @@ def main() -> None:
 
     for page in (found for pattern in WALKED for found in sorted(CONFIGURATION.parent.glob(pattern))):
         page.write_text(walk(page.read_text("utf-8")), "utf-8")
+
+    for page in sorted(CONFIGURATION.parent.glob("papers/*.md")):
+        page.write_text(with_recipe(page.read_text("utf-8"), page.stem), "utf-8")
 
     import make_picture
 

@@ -49,6 +49,25 @@ def test_readme_prints_what_it_says(refresh):
     assert isinstance(names["solution"], gp.Solution)
 
 
+def test_readme_systems_are_what_it_says(tmp_path, monkeypatch):
+    """Its commands run as they stand, but for the names of log and folder."""
+    from click.testing import CliRunner
+
+    from gapless.cli import gapless
+    from gapless.io import write_recording
+
+    part = (ROOT / "README.md").read_text("utf-8").split("## Systems")[1]
+    lines = [line.split("#")[0].split()[1:] for line in part.split("```")[1].splitlines() if "gapless " in line]
+    commands = [words for words in lines if words[0] != "install"]
+    assert [words[0] for words in commands] == ["systems", "systems", "fuse", "bench"]
+    monkeypatch.chdir(tmp_path)
+    write_recording(gp.simulate_drive("urban", duration=330.0), tmp_path / "LOG")
+    for words in commands:
+        result = CliRunner().invoke(gapless, words, prog_name="gapless")
+        assert result.exit_code == 0, result.output
+    assert (tmp_path / "DIR" / "report.html").exists()
+
+
 def test_readme_begins_with_a_picture_that_is_there():
     (picture,) = re.findall(r"!\[.+\]\((.+)\)", (ROOT / "README.md").read_text("utf-8"))
     assert (ROOT / picture).read_text("utf-8").startswith("<svg")
