@@ -1,4 +1,4 @@
-"""Run the pages' code again; put what it prints, the picture and the recipe's defaults in place.
+"""Run the pages' code again; put what it prints, the picture, recipes and their defaults in place.
 
 python docs/refresh.py
 """
@@ -14,9 +14,11 @@ from pathlib import Path
 from typing import Any
 
 README = Path(__file__).parents[1] / "README.md"
-TUTORIAL = Path(__file__).parent / "tutorial.md"
+WALKED = ("tutorial.md", "gallery/*.md")
+"""Pages whose code is run."""
 CONFIGURATION = Path(__file__).parent / "configuration.md"
 _CODE = re.compile(r"```python\n(.*?)```", re.DOTALL)
+_RECIPE = re.compile(r"```toml\n.*?```", re.DOTALL)
 _ROW = re.compile(r"\| `(\w+)` \| `.*?` \|")
 _BLOCK = re.compile(r"```(\w+)\n(.*?)```", re.DOTALL)
 _PASSING = re.compile(r"^(wrote .*|\d+ outages scored in .*)\n", re.MULTILINE)
@@ -62,18 +64,18 @@ def run() -> tuple[str, dict[str, Any]]:
     with tempfile.TemporaryDirectory() as folder, contextlib.redirect_stdout(io.StringIO()) as said:
         os.chdir(folder)
         try:
-            exec(compile(code(), str(README), "exec"), names)
+            exec(compile(code(), str(README), "exec", dont_inherit=True), names)
         finally:
             os.chdir(here)
     return said.getvalue(), names
 
 
 def walk(page: str) -> str:
-    """The tutorial with what its commands print today.
+    """A page with what its commands and its Python print today.
 
     Recipes that it shows are saved under their names, commands are run in a folder that is thrown
-    away, and a block of text takes what the command before it printed, but for files, seconds and the tables
-    of single drives.
+    away, blocks of Python one after the other, and a block of text takes what was printed before it, but
+    for files, seconds and the tables of single drives.
 
     Parameters
     ----------
@@ -88,6 +90,7 @@ def walk(page: str) -> str:
     from gapless.cli import gapless
 
     said, here, wide = "", Path.cwd(), {"COLUMNS": "100"}
+    names: dict[str, Any] = {"__name__": "page"}
     parts = _BLOCK.split(page)
     with tempfile.TemporaryDirectory() as folder:
         os.chdir(folder)
@@ -96,7 +99,7 @@ def walk(page: str) -> str:
                 kind, text = parts[k], parts[k + 1]
                 if kind == "toml":
                     name = re.search(r'^name = "(.+)"', text, re.MULTILINE)
-                    assert name is not None, "a recipe in the tutorial has a name"
+                    assert name is not None, "a recipe on such a page has a name"
                     Path(f"{name[1]}.toml").write_text(text, "utf-8")
                 elif kind == "sh":
                     words = text.split()[1:]
@@ -104,6 +107,10 @@ def walk(page: str) -> str:
                     assert result.exit_code == 0, result.output
                     told = _EACH.sub("(and a table for each drive)\n\n", _PASSING.sub("", result.output))
                     said = told.strip() + "\n"
+                elif kind == "python":
+                    with contextlib.redirect_stdout(io.StringIO()) as printed:
+                        exec(compile(text, "page", "exec", dont_inherit=True), names)
+                    said = printed.getvalue()
                 elif kind == "text":
                     parts[k + 1] = said
         finally:
@@ -144,15 +151,37 @@ def with_defaults(page: str) -> str:
     return "".join(lines)
 
 
+def with_recipe(page: str, name: str) -> str:
+    """A paper's page with its recipe as it is today.
+
+    Parameters
+    ----------
+    page : str
+    name : str
+        Of the built-in system; without one of that name the page stays as it is.
+
+    Returns
+    -------
+    str
+    """
+    from gapless.systems.library import names, source
+
+    return _RECIPE.sub(f"```toml\n{source(name)}```", page, count=1) if name in names() else page
+
+
 def main() -> None:
-    """Output, tutorial, defaults, picture."""
+    """Output, pages whose code is run, recipes, defaults, picture."""
     printed, _ = run()
     text = README.read_text("utf-8")
     README.write_text(_OUTPUT.sub(lambda m: m[1] + printed + m[3], text, count=1), "utf-8")
     print(printed, end="")
     CONFIGURATION.write_text(with_defaults(CONFIGURATION.read_text("utf-8")), "utf-8")
 
-    TUTORIAL.write_text(walk(TUTORIAL.read_text("utf-8")), "utf-8")
+    for page in (found for pattern in WALKED for found in sorted(CONFIGURATION.parent.glob(pattern))):
+        page.write_text(walk(page.read_text("utf-8")), "utf-8")
+
+    for page in sorted(CONFIGURATION.parent.glob("papers/*.md")):
+        page.write_text(with_recipe(page.read_text("utf-8"), page.stem), "utf-8")
 
     import make_picture
 

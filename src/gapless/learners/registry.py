@@ -125,7 +125,7 @@ def _with(learner: Any, params: dict[str, Any], where: str) -> Any:
         raise ConfigError(f"{where} has no parameter {unknown[0]!r}; choose from {names or 'none'}")
     learner.set_params(**params)
     for each in (learner, *learner.get_params().values()):
-        if hasattr(each, "_validate_params") and not isinstance(each, type):
+        if hasattr(each, "_parameter_constraints") and not isinstance(each, type):
             try:
                 each._validate_params()
             except ValueError as error:

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from inspect import signature
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Final, Literal
 
 import numpy as np
 from msgspec import Struct
@@ -19,10 +20,14 @@ if TYPE_CHECKING:
     from gapless.bridges.model import Model
     from gapless.measurements.base import Sensor
 
+MODELS: Final = ("error", "increment")
+"""What a learner may be taught; a bridge of your own need not have one."""
+
 
 class BridgeUse(Struct, forbid_unknown_fields=True, frozen=True):
     """What is learned while GNSS speaks, and said while it is silent; without a model, nothing is.
 
+    A name from `gapless.bridges.BRIDGES` is a bridge of your own: it gets `parameters` and no other key.
     `error` learns the error of an INS that is not corrected and starts anew every `reset` seconds;
     `increment` learns the way that GNSS goes from epoch to epoch. `features` are shown now and
     `lags` - 1 epochs back, with `window` past errors; `reference` and `learns` say of what error.
@@ -31,7 +36,7 @@ class BridgeUse(Struct, forbid_unknown_fields=True, frozen=True):
     seconds, and leaves out `purge` epochs between those trained on and those held out.
     """
 
-    model: Literal["none", "error", "increment"] = "none"
+    model: str = "none"
     features: tuple[str, ...] = ()
     lags: Count = 1
     window: WholeNumber = 0
@@ -45,6 +50,7 @@ class BridgeUse(Struct, forbid_unknown_fields=True, frozen=True):
     train: Positive | Literal["onset"] = "onset"
     interval: NonNegative = 1.0
     purge: WholeNumber = 5
+    parameters: dict[str, Any] = {}
 
 
 class LearnerUse(Struct, forbid_unknown_fields=True, frozen=True):
@@ -73,10 +79,19 @@ def check(use: BridgeUse, where: str) -> None:
     ConfigError
         If they do not, with the reason.
     """
+    from gapless.bridges import BRIDGES
     from gapless.bridges.epochs import FEATURES
 
     if use.model == "none":
         return
+    if use.model in BRIDGES:
+        _check_own(use, list(signature(BRIDGES[use.model]).parameters)[1:], where)
+        return
+    if use.model not in MODELS:
+        choices = ", ".join(("none", *MODELS, *BRIDGES))
+        raise ConfigError(f"{where}: bridge.model: {use.model!r} is unknown; choose from {choices}")
+    if use.parameters:
+        raise ConfigError(f"{where}: bridge.parameters are for bridges of your own; {use.model} has none")
     unknown = [name for name in use.features if name not in FEATURES]
     if unknown:
         raise ConfigError(f"{where}: bridge.features has {unknown[0]!r}; choose from {', '.join(FEATURES)}")
@@ -88,6 +103,18 @@ def check(use: BridgeUse, where: str) -> None:
         raise ConfigError(f"{where}: bridge.learns is empty; name position, velocity or both")
     if use.model == "error" and use.reference == "gnss" and "attitude" in use.learns:
         raise ConfigError(f'{where}: GNSS shows no attitude; learn it with bridge.reference = "filter"')
+
+
+def _check_own(use: BridgeUse, known: list[str], where: str) -> None:
+    """See that a bridge of the user's own is given what it takes, and nothing that it would not hear of."""
+    for name in use.parameters:
+        if name not in known:
+            choices = ", ".join(known) or "none"
+            raise ConfigError(f"{where}: bridge.parameters: {use.model} has no {name!r}; it has {choices}")
+    plain = BridgeUse(model=use.model, parameters=use.parameters)
+    for key in BridgeUse.__struct_fields__:
+        if getattr(use, key) != getattr(plain, key):
+            raise ConfigError(f"{where}: bridge.{key} is not for {use.model}; give it bridge.parameters")
 
 
 def bridges(
@@ -116,6 +143,10 @@ def bridges(
     """
     if use.model == "none":
         return ()
+    from gapless.bridges import BRIDGES
+
+    if use.model in BRIDGES:
+        return (BRIDGES[use.model](sensors, **use.parameters),)
     from gapless.bridges.learned import LearnedBridge, Schedule
     from gapless.bridges.noise import CalibratedNoise, FilterNoise
     from gapless.bridges.shadow import Shadow

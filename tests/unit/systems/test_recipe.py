@@ -4,6 +4,7 @@ import re
 
 import pytest
 
+from gapless.bridges import BRIDGES
 from gapless.errors import ConfigError
 from gapless.filters.adaptation.registry import RULES
 from gapless.inertial.layout import EXTRAS
@@ -34,6 +35,11 @@ def refused(text):
         ("[clock]\nvelocity = 11.0", ["clock.velocity", "10"]),
         ("[gnss]\nlever_arm = [1.0, 2.0]", ["gnss.lever_arm", "3"]),
         ("[filter\n", ["not valid TOML"]),
+        ("[bridge]\nmodel = 'errror'", ["bridge.model", "errror", "none, error, increment"]),
+        (
+            "[bridge]\nmodel = 'error'\nwindow = 5\nparameters = {a = 1}",
+            ["bridge.parameters", "error has none"],
+        ),
         ("[filter]\nmoments = 'unscented'", ["filter.moments", "unscented"]),
         ("[filter]\nmoments = 'cubature'\ncorrection = 'feedforward'", ["filter.moments", "feedback"]),
         ("[adaptation]\ngnss = ['gat']", ["adaptation.gnss", "'gat'", *RULES]),
@@ -44,6 +50,21 @@ def refused(text):
 )
 def test_a_mistake_is_named_where_it_is(text, words):
     message = refused(text)
+    for word in words:
+        assert word in message, message
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("parameters = {widht = 1}", ["bridge.parameters", "widht", "it has width"]),
+        ("reset = 60", ["bridge.reset", "not for mine", "bridge.parameters"]),
+    ],
+)
+def test_a_bridge_of_ones_own_is_given_what_it_takes(text, words, monkeypatch):
+    monkeypatch.setitem(BRIDGES, "mine", lambda sensors, width=1: None)
+    assert parse("[bridge]\nmodel = 'mine'\nparameters = {width = 2}", "my.toml").bridge.model == "mine"
+    message = refused(f"[bridge]\nmodel = 'mine'\n{text}")
     for word in words:
         assert word in message, message
 
