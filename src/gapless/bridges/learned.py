@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import statistics
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple, Protocol, Self
@@ -141,6 +142,11 @@ class LearnedBridge:
     course: Any = None
     began: float = math.nan
     count: int = 0
+    pace: float = math.nan
+
+    def __post_init__(self) -> None:
+        if math.isnan(self.pace):
+            self.pace = self.schedule.interval
 
     def hear(self, belief: Belief, reading: Reading, used: bool) -> None:
         """See `Bridge`; a rejected fix breaks the silence too.
@@ -171,7 +177,7 @@ class LearnedBridge:
     def tick(self, belief: Belief, motion: Motion) -> tuple[Saying, ...]:
         """See `Bridge`."""
         self.felt = self.felt + motion.felt * motion.dt
-        silent = motion.time - self.spoke > self._patience()
+        silent = motion.time - self.spoke > 1.5 * self.pace + self.schedule.slack
         if not silent:
             self._keep_up(belief, motion)
             return ()
@@ -181,7 +187,7 @@ class LearnedBridge:
                 self._go_silent(belief, motion.time)
             if self.course is None:
                 return ()
-        if motion.time < self.before + self._interval() - 0.5 * motion.dt:
+        if motion.time < self.before + self.pace - 0.5 * motion.dt:
             return ()
         return self._speak(belief, motion.time)
 
@@ -215,11 +221,13 @@ class LearnedBridge:
             velocity = apart[3:6]
         gnss = np.concatenate([apart[:3] - seen, velocity])
         epoch = self._epoch(belief, time, x)
-        if not epoch.dt < 1.6 * self._interval():
+        if not epoch.dt < 1.6 * self.pace:
             epoch = epoch._replace(dt=math.nan)
         epoch = epoch._replace(gnss_error=gnss, filter_error=apart, fix=self.fix)
         self.epochs.append(epoch)
         del self.epochs[: -self.schedule.samples]
+        steps = [e.dt for e in self.epochs[-20:] if not math.isnan(e.dt)]
+        self.pace = statistics.median(steps) if steps else self.pace
         self.felt_before, self.before = self._felt_now(belief), time
 
     def _epoch(self, belief: Belief, time: float, x: Array) -> Epoch:
@@ -234,14 +242,6 @@ class LearnedBridge:
 
     def _felt_now(self, belief: Belief) -> Array:
         return self.felt + belief.memory[at.TICK_W : at.TICK_W + 6]
-
-    def _interval(self) -> float:
-        """Time between epochs, as this receiver has it."""
-        steps = [e.dt for e in self.epochs[-20:] if not math.isnan(e.dt)]
-        return float(np.median(steps)) if steps else self.schedule.interval
-
-    def _patience(self) -> float:
-        return 1.5 * self._interval() + self.schedule.slack
 
     def _keep_up(self, belief: Belief, motion: Motion) -> None:
         """While GNSS speaks: the shadow starts anew where that is due, and a schedule is kept."""
