@@ -186,7 +186,7 @@ def test_paper_page_shows_the_recipe_and_every_comparator(page):
     ):
         assert (ROOT / "src/gapless" / path).exists(), path
     result = text.split("## Result")[1]
-    assert re.search(r"`(gapless reproduce|python benchmarks/|tests/)", result), "a figure without its command"
+    assert re.search(r"`(gapless reproduce|python benchmarks/|tests/)", result), "no command prints it"
 
 
 @pytest.mark.parametrize("script", sorted((ROOT / "benchmarks").glob("*.py")), ids=lambda p: p.stem)

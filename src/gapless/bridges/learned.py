@@ -71,6 +71,9 @@ class Schedule:
         Epochs closer than this are not used [s].
     purge : int
         Epochs left out between those trained on and those held out.
+    settle : float
+        Time after an outage in which nothing is learned [s]: the filter still finds back, and by what it is
+        off then has nothing to do with the INS.
     slack : float
         How much later than it holds a fix may arrive [s]: silence begins so much later.
     """
@@ -80,6 +83,7 @@ class Schedule:
     every: float = math.inf
     interval: float = 1.0
     purge: int = 5
+    settle: float = 10.0
     slack: float = 0.0
 
 
@@ -143,6 +147,7 @@ class LearnedBridge:
     began: float = math.nan
     count: int = 0
     pace: float = math.nan
+    settled: float = -math.inf
 
     def __post_init__(self) -> None:
         if math.isnan(self.pace):
@@ -170,7 +175,10 @@ class LearnedBridge:
             return
         if not math.isnan(self.began):  # an outage ends: its last word is no epoch to go on from
             self.course, self.began, self.count, self.before = None, math.nan, 0, math.nan
+            self.settled = reading.time + self.schedule.settle
         self.fix, self.fix_time, self.felt_fix = reading.value, reading.time, self._felt_now(belief)
+        if reading.time < self.settled:
+            return
         if not reading.time - self.before < self.schedule.interval - 0.05:
             self._learn_from(belief, reading.time, x, apart, seen.z)
 
@@ -245,7 +253,8 @@ class LearnedBridge:
 
     def _keep_up(self, belief: Belief, motion: Motion) -> None:
         """While GNSS speaks: the shadow starts anew where that is due, and a schedule is kept."""
-        if self.shadow.due(motion.time):
+        stale = math.isfinite(self.shadow.interval) and self.shadow.began < self.settled <= motion.time
+        if stale or self.shadow.due(motion.time):
             self.shadow.restart(belief, motion.time)
         else:
             self.shadow.tick(belief, motion)

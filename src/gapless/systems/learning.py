@@ -163,7 +163,7 @@ def bridges(
             lambda: make(who.name, who.parameters, who.seed),
             heard,
             CalibratedNoise() if use.noise == "calibrated" else FilterNoise(),
-            Schedule(use.samples, use.least, _seconds(use.train), use.interval, use.purge, lateness),
+            Schedule(use.samples, use.least, _seconds(use.train), use.interval, use.purge, slack=lateness),
             Shadow(_seconds(use.reset)),
             _saved(who.model, model, use),
         ),

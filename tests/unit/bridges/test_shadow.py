@@ -12,7 +12,9 @@ from gapless.events import Motion
 from gapless.feed import events
 from gapless.inertial.coast import STATE
 from gapless.navigator import Navigator
+from gapless.scenarios import Outage, withhold
 from gapless.simulate import simulate
+from gapless.systems.adjust import named
 from gapless.systems.build import settings
 from gapless.systems.recipe import System
 
@@ -112,3 +114,16 @@ def test_when_a_start_is_due():
     assert not shadow.due(69.9)
     assert shadow.due(70.0)
     assert not Shadow(math.inf, 0.0).due(1e9)
+
+
+def test_nothing_is_learned_while_a_filter_finds_back():
+    log = simulate("urban", "consumer", 200.0, 3)
+    gone = replace(log, gnss=withhold(log.gnss, (Outage(100.0, 130.0),), 0.0))
+    navigator = Navigator(settings(named("wang2018"), gone, {}, MOUNTING))
+    for event in events(gone, {}):
+        navigator.step(event)
+    (bridge,) = navigator.bridges
+    learned = [e for e in bridge.epochs if e.time > 100.0]
+    assert 139.9 < learned[0].time < 143.0
+    assert learned[0].age < 2.0  # of a shadow that started anew
+    assert np.isnan(learned[0].dt)
