@@ -18,6 +18,8 @@ from gapless.settings import Settings
 from gapless.state import State
 from gapless.tape import Tape
 
+MISLED = 60.0
+"""For so long after its last word a bridge is suspected where a filter turns out to be wrong [s]."""
 DENSITIES = 5
 """How many of the noise parameters are densities; the rest are rates."""
 
@@ -59,6 +61,8 @@ def assimilate(
     _process(state, settings, verdict)
     if verdict.widen:
         b.widen(o.H, o.z)
+        if channel == "velocity" and time - state.heard.get("bridge", -math.inf) < MISLED:
+            b.doubt(float(np.hypot(*o.z[:2])), settings.ceiling)
     r = verdict.r
     if r is None:
         return False

@@ -16,6 +16,8 @@ from gapless.recording import Array
 from gapless.units import DEG
 
 CORE_STATES: Final = 15
+SECONDS: Final = 5.0
+"""In which a tilt shows in the velocity, for `Belief.doubt`."""
 
 
 @kernel
@@ -192,6 +194,24 @@ class Belief:
         self.set_sd("velocity", np.array([1.0, 1.0, 0.1]) * min(3.0 * silence, 15.0))
         self.set_sd("attitude", np.array([3.0, 3.0, min(15.0 * silence, 100.0)]) * DEG)
         self.trail = Trail(self.trail.length)
+
+    def doubt(self, off: float, ceiling: Array) -> None:
+        """Doubt what a bridge that misled the filter taught it: attitude and the biases of the sensors.
+
+        Parameters
+        ----------
+        off : float
+            By how much the velocity turned out to be wrong [m/s]; a tilt does that in some seconds.
+        ceiling : ndarray, shape (n,)
+            Variance of each state when nothing is known of it; biases come back to a tenth of it.
+        """
+        p, blocks = self.p.reshape(ROW, ROW), self.layout.blocks
+        tilt = min(off / (SECONDS * 9.8), 0.3)
+        heading = min(off / max(float(np.hypot(*self.v_n[:2])), 5.0), 1.0)
+        p[(6, 7, 8), (6, 7, 8)] += np.square([tilt, tilt, heading])
+        for name in ("gyro_bias", "accel_bias"):
+            index = np.arange(blocks[name].start, blocks[name].stop)
+            p[index, index] += 0.1 * ceiling[index]
 
     def estimate(self) -> Array:
         """The best state: nominal, with the open-loop error applied to a copy of it.

@@ -127,3 +127,16 @@ def test_nothing_is_learned_while_a_filter_finds_back():
     assert 139.9 < learned[0].time < 143.0
     assert learned[0].age < 2.0  # of a shadow that started anew
     assert np.isnan(learned[0].dt)
+
+
+def test_a_filter_that_a_bridge_misled_comes_back():
+    """Sure of a wrong tilt, it would be thrown off again by every second fix."""
+    log = simulate("urban", "consumer", 200.0, 3)
+    gone = replace(log, gnss=withhold(log.gnss, (Outage(100.0, 130.0),), 0.0))
+    navigator = Navigator(settings(named("wang2018"), gone, {}, MOUNTING))
+    for event in events(gone, {}):
+        navigator.step(event)
+    said = navigator.journal.innovations()["position"]
+    assert np.linalg.norm(said.z[said.time >= 130.0][0]) > 30.0  # it was misled
+    # two seconds until two fixes agree, some more until the tilt is found; then as good as ever
+    assert said.nis[said.time > 145.0].max() < 16.3  # 99.9 % of chi-square of 3
