@@ -6,7 +6,7 @@ import math
 import statistics
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from typing import Any, NamedTuple, Protocol, Self
+from typing import TYPE_CHECKING, Any, NamedTuple, Self
 
 import numpy as np
 
@@ -23,36 +23,8 @@ from gapless.measurements.base import Observation, Sensor
 from gapless.recording import Array
 from gapless.solution import Decision
 
-
-class Regressor(Protocol):
-    """What is asked of a learner: a scikit-learn estimator has it."""
-
-    def fit(self, X: Array, Y: Array) -> Any:
-        """Learn.
-
-        Parameters
-        ----------
-        X : ndarray, shape (n, p)
-        Y : ndarray, shape (n, k)
-
-        Returns
-        -------
-        object
-        """
-        ...
-
-    def predict(self, X: Array) -> Array:
-        """Answer.
-
-        Parameters
-        ----------
-        X : ndarray, shape (n, p)
-
-        Returns
-        -------
-        ndarray, shape (n, k)
-        """
-        ...
+if TYPE_CHECKING:
+    from gapless.learners import Regressor
 
 
 @dataclass(frozen=True)
@@ -115,18 +87,18 @@ class LearnedBridge:
     ----------
     model : Model
     learner : callable
-        A new, untrained one.
+        A new, untrained one; None where nothing is to be learned here.
     sensors : dict of str to Sensor
         "position", and "velocity" where there is one.
     noise : Noise
     schedule : Schedule
     shadow : Shadow
     trained : Trained, optional
-        One that has learned elsewhere: nothing is learned here then.
+        One that has learned elsewhere.
     """
 
     model: Model
-    learner: Callable[[], Regressor]
+    learner: Callable[[], Regressor] | None
     sensors: dict[str, Sensor]
     noise: Noise = field(default_factory=FilterNoise)
     schedule: Schedule = field(default_factory=Schedule)
@@ -264,11 +236,11 @@ class LearnedBridge:
 
     def _train(self, time: float) -> None:
         """Train on what there is, after a rehearsal on what was held out of a first training."""
-        if self.trained is not None and not self.trained.rows:  # it has learned elsewhere
+        if self.learner is None:
             return
         noise = self.noise
         if noise.held_out:
-            noise = self._calibrated(noise)
+            noise = self._calibrated(noise, self.learner())
         x, y = self.model.pairs(self.epochs)
         if len(x) < self.schedule.least:
             return
@@ -277,14 +249,13 @@ class LearnedBridge:
         self.trained = Trained(learner, noise, time, len(x))
         self.trainings = (*self.trainings, self.trained)
 
-    def _calibrated(self, noise: Noise) -> Noise:
+    def _calibrated(self, noise: Noise, learner: Regressor) -> Noise:
         """The noise that fits what a learner of the older epochs gets wrong in the later ones."""
         cut = round((1.0 - noise.held_out) * len(self.epochs))
         older, later = self.epochs[: max(0, cut - self.schedule.purge)], self.epochs[cut:]
         x, y = self.model.pairs(older)
         if len(x) < max(2, self.schedule.least // 2) or len(later) < 6:
             return noise
-        learner = self.learner()
         learner.fit(x, y)
         horizon = max(5, min(60, len(later) // 2))
         return noise.fitted(rehearse(self.model, learner.predict, later, horizon))

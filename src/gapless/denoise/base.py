@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from typing import Protocol
 
 import numpy as np
@@ -36,18 +37,47 @@ class Denoiser(Protocol):
         ...
 
 
-def whole_record(denoiser: Denoiser) -> str:
-    """The text of a denoiser that sees the future.
+class WholeRecord(ABC):
+    """A denoiser that is given a whole record, and so sees the future."""
 
-    Parameters
-    ----------
-    denoiser : Denoiser
+    @property
+    @abstractmethod
+    def name(self) -> str:
+        """Of the method, as in the registry."""
 
-    Returns
-    -------
-    str
-    """
-    return f"{denoiser.name}, whole record: not a real-time result"
+    @property
+    def text(self) -> str:
+        """What ran, as a result states it."""
+        return f"{self.name}, whole record: not a real-time result"
+
+    def __call__(self, x: Array, rate: float) -> Array:
+        """Denoise one channel.
+
+        Parameters
+        ----------
+        x : ndarray, shape (n,)
+        rate : float
+            Samples per second [Hz]; most methods do not use it.
+
+        Returns
+        -------
+        ndarray, shape (n,)
+
+        Raises
+        ------
+        ConfigError
+            If what was chosen cannot denoise this record.
+        MissingExtraError
+            Where PyWavelets is needed and not installed.
+        RecordingError
+            If a value is not finite.
+        """
+        record = sound(x)
+        return record if len(record) < SHORTEST else self._denoised(record, rate)
+
+    @abstractmethod
+    def _denoised(self, record: Array, rate: float) -> Array:
+        """A sound record, long enough and free to be changed, without its noise."""
 
 
 def at_least(least: float, **values: float) -> None:

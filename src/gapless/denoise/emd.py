@@ -6,14 +6,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from gapless.denoise.base import SHORTEST, at_least, sound, whole_record
+from gapless.denoise.base import WholeRecord, at_least
 from gapless.denoise.noise_model import energy_bound, noise_level
 from gapless.denoise.sifting import SIFTINGS, modes
 from gapless.recording import Array
 
 
 @dataclass(frozen=True)
-class Emd:
+class Emd(WholeRecord):
     """Partial reconstruction: what is left without the fast modes whose energy is that of white noise.
 
     Modes go until one exceeds the 99 % bound of noise (Flandrin, Rilling and Goncalves 2004; EMD-Conv of
@@ -35,27 +35,8 @@ class Emd:
     def __post_init__(self) -> None:
         at_least(1, siftings=self.siftings)
 
-    def __call__(self, x: Array, rate: float) -> Array:
-        """Denoise one channel.
-
-        Parameters
-        ----------
-        x : ndarray, shape (n,)
-        rate : float
-            Not used.
-
-        Returns
-        -------
-        ndarray, shape (n,)
-
-        Raises
-        ------
-        RecordingError
-            If a value is not finite.
-        """
-        kept, sigma = sound(x), 0.0
-        if len(kept) < SHORTEST:
-            return kept
+    def _denoised(self, record: Array, rate: float) -> Array:
+        kept, sigma = record, 0.0
         for i, mode in enumerate(modes(kept, self.siftings), 1):
             if i == 1:
                 sigma = noise_level(mode)
@@ -68,8 +49,3 @@ class Emd:
     def name(self) -> str:
         """As in the registry."""
         return "emd"
-
-    @property
-    def text(self) -> str:
-        """What ran, as a result states it."""
-        return whole_record(self)

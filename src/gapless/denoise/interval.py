@@ -12,7 +12,7 @@ from typing import Final
 
 import numpy as np
 
-from gapless.denoise.base import SHORTEST, at_least, sound, whole_record
+from gapless.denoise.base import WholeRecord, at_least
 from gapless.denoise.noise_model import noise_level, shrink_intervals, threshold
 from gapless.denoise.sifting import SIFTINGS, modes
 from gapless.denoise.wavelet import Wavelet
@@ -27,7 +27,7 @@ ALTERATIONS: Final = ("circulation", "permutation")
 
 
 @dataclass(frozen=True)
-class EmdIt:
+class EmdIt(WholeRecord):
     """EMD interval thresholding (EMD-IT).
 
     Parameters
@@ -50,27 +50,7 @@ class EmdIt:
         at_least(0, factor=self.factor)
         at_least(1, siftings=self.siftings)
 
-    def __call__(self, x: Array, rate: float) -> Array:
-        """Denoise one channel.
-
-        Parameters
-        ----------
-        x : ndarray, shape (n,)
-        rate : float
-            Not used.
-
-        Returns
-        -------
-        ndarray, shape (n,)
-
-        Raises
-        ------
-        RecordingError
-            If a value is not finite.
-        """
-        record = sound(x)
-        if len(record) < SHORTEST:
-            return record
+    def _denoised(self, record: Array, rate: float) -> Array:
         return _thresholded(record, None, self.factor, self.siftings)
 
     @property
@@ -78,14 +58,9 @@ class EmdIt:
         """As in the registry."""
         return "emd-it"
 
-    @property
-    def text(self) -> str:
-        """What ran, as a result states it."""
-        return whole_record(self)
-
 
 @dataclass(frozen=True)
-class EmdIit:
+class EmdIit(WholeRecord):
     """Iterative EMD interval thresholding (EMD-IIT): the mean over noisy versions of a record.
 
     Each has its first mode moved about, as if the noise had fallen otherwise.
@@ -124,28 +99,8 @@ class EmdIit:
                 f"no alteration {self.alteration!r} of the first mode; the choices are {choices}"
             )
 
-    def __call__(self, x: Array, rate: float) -> Array:
-        """Denoise one channel.
-
-        Parameters
-        ----------
-        x : ndarray, shape (n,)
-        rate : float
-            Not used.
-
-        Returns
-        -------
-        ndarray, shape (n,)
-
-        Raises
-        ------
-        MissingExtraError
-            From EMD-CIIT, where PyWavelets is not installed.
-        RecordingError
-            If a value is not finite.
-        """
-        record = sound(x)
-        first = next(modes(record, self.siftings), None) if len(record) >= SHORTEST else None
+    def _denoised(self, record: Array, rate: float) -> Array:
+        first = next(modes(record, self.siftings), None)
         if first is None:
             return record
         noise, total = self.noise(first, rate), np.zeros_like(record)
@@ -177,11 +132,6 @@ class EmdIit:
     def name(self) -> str:
         """As in the registry."""
         return "emd-iit"
-
-    @property
-    def text(self) -> str:
-        """What ran, as a result states it."""
-        return whole_record(self)
 
 
 @dataclass(frozen=True)

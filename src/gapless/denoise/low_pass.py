@@ -6,13 +6,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from gapless.denoise.base import SHORTEST, at_least, sound, whole_record
+from gapless.denoise.base import WholeRecord, at_least
 from gapless.errors import ConfigError
 from gapless.recording import Array
 
 
 @dataclass(frozen=True)
-class LowPass:
+class LowPass(WholeRecord):
     """A Butterworth filter run forwards and back: the signal s of `snr` on the road.
 
     It is a product of the spectrum and 1 / (1 + (f / cutoff)^(2 order)); the ends are mirrored about
@@ -40,7 +40,7 @@ class LowPass:
         at_least(1, order=self.order)
 
     def __call__(self, x: Array, rate: float) -> Array:
-        """Filter one channel.
+        """Filter one channel; see `WholeRecord`.
 
         Parameters
         ----------
@@ -56,18 +56,16 @@ class LowPass:
         ------
         ConfigError
             If the samples hold nothing above the cutoff.
-        RecordingError
-            If a value is not finite.
         """
-        record = sound(x)
         if self.cutoff >= rate / 2.0:
             raise ConfigError(
                 f"a low-pass of {self.cutoff:g} Hz takes nothing from {rate:g} samples a second; "
                 f"give a cutoff below {rate / 2.0:g} Hz"
             )
+        return super().__call__(x, rate)
+
+    def _denoised(self, record: Array, rate: float) -> Array:
         n = len(record)
-        if n < SHORTEST:
-            return record
         # without the line through its ends and continued oddly, it has a period without steps
         line = np.linspace(record[0], record[-1], n)
         bent = record - line
@@ -80,8 +78,3 @@ class LowPass:
     def name(self) -> str:
         """With the cutoff."""
         return f"two-sided low-pass of {self.cutoff:g} Hz"
-
-    @property
-    def text(self) -> str:
-        """What ran, as a result states it."""
-        return whole_record(self)

@@ -8,7 +8,7 @@ from typing import Final
 
 import numpy as np
 
-from gapless.denoise.base import SHORTEST, sound, whole_record
+from gapless.denoise.base import WholeRecord
 from gapless.errors import ConfigError, MissingExtraError
 from gapless.recording import Array
 
@@ -37,7 +37,7 @@ def pywavelets() -> ModuleType:
 
 
 @dataclass(frozen=True)
-class Wavelet:
+class Wavelet(WholeRecord):
     """Thresholding of the details of an orthogonal wavelet transform; the approximation is kept.
 
     The noise's sigma is median|d| / 0.6745 of the finest details d. "soft" and "hard" take the
@@ -65,31 +65,7 @@ class Wavelet:
             choices = ", ".join(THRESHOLDINGS)
             raise ConfigError(f"no wavelet thresholding {self.thresholding!r}; the choices are {choices}")
 
-    def __call__(self, x: Array, rate: float) -> Array:
-        """Denoise one channel.
-
-        Parameters
-        ----------
-        x : ndarray, shape (n,)
-        rate : float
-            Not used.
-
-        Returns
-        -------
-        ndarray, shape (n,)
-
-        Raises
-        ------
-        ConfigError
-            If PyWavelets has no discrete wavelet of that name.
-        MissingExtraError
-            Where PyWavelets is not installed.
-        RecordingError
-            If a value is not finite.
-        """
-        record = sound(x)
-        if len(record) < SHORTEST:
-            return record
+    def _denoised(self, record: Array, rate: float) -> Array:
         pywt = pywavelets()
         if self.wavelet not in pywt.wavelist(kind="discrete"):
             raise ConfigError(f"no discrete wavelet {self.wavelet!r} in PyWavelets; try sym8 or db4")
@@ -113,8 +89,3 @@ class Wavelet:
     def name(self) -> str:
         """As in the registry, with the thresholding."""
         return f"wavelet ({self.thresholding})"
-
-    @property
-    def text(self) -> str:
-        """What ran, as a result states it."""
-        return whole_record(self)

@@ -3,23 +3,18 @@
 from __future__ import annotations
 
 import math
-import multiprocessing
-import signal
 import time
-from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import ProcessPoolExecutor, as_completed
-from contextlib import contextmanager
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from gapless.errors import ConfigError
 from gapless.laboratory.boards import leaderboard, pairs, set_apart
 from gapless.laboratory.jobs import Job, Outcome, execute
 from gapless.laboratory.methods import Method
+from gapless.laboratory.pool import Progress, in_order
 from gapless.laboratory.rows import Block, Describe, Row
 from gapless.laboratory.study import Scenario, Simulated, Source
 
-Progress = Callable[[float], None]
-"""Told how many jobs are done."""
 MOST_TRACKS = 20
 """Tracks are kept of so many recordings."""
 
@@ -105,7 +100,7 @@ def bench(
     begun = time.perf_counter()
     results = Results(tuple(methods), tuple(scenarios), tuple(protocols))
     jobs = plan_jobs(sources, methods, scenarios, protocols, describe, seed)
-    for outcome in run_jobs(jobs, processes, progress):
+    for outcome in in_order(execute, jobs, processes, progress):
         _gather(results, outcome)
     if not results.outages:
         raise ConfigError("no outage fits into any of the recordings; begin earlier, or ask for shorter ones")
@@ -149,55 +144,6 @@ def plan_jobs(
                 Job(source, part, tuple(scenarios), tuple(protocols), describe, seed, kept, kept and first)
             )
     return jobs
-
-
-def run_jobs(jobs: Sequence[Job], processes: int, progress: Progress | None = None) -> Iterator[Outcome]:
-    """Outcomes in the order of the jobs.
-
-    Parameters
-    ----------
-    jobs : sequence of Job
-    processes : int
-    progress : callable, optional
-
-    Yields
-    ------
-    Outcome
-    """
-    tell = progress or (lambda done: None)
-    if processes == 1:
-        for k, job in enumerate(jobs):
-            yield execute(job)
-            tell(k + 1.0)
-        return
-    with _workers(processes) as pool:
-        futures = [pool.submit(execute, job) for job in jobs]
-        for k, future in enumerate(as_completed(futures)):
-            future.result()  # whatever went wrong ends the bench now
-            tell(k + 1.0)
-        yield from (future.result() for future in futures)
-
-
-@contextmanager
-def _workers(count: int) -> Iterator[ProcessPoolExecutor]:
-    """Processes that end with the block, whatever they are doing then."""
-    others = set(multiprocessing.active_children())
-    pool = ProcessPoolExecutor(
-        count, mp_context=multiprocessing.get_context("spawn"), initializer=_leave_interrupts_to_the_parent
-    )
-    try:
-        yield pool
-    except BaseException:
-        pool.shutdown(wait=False, cancel_futures=True)
-        for child in set(multiprocessing.active_children()) - others:
-            child.terminate()
-        raise
-    finally:
-        pool.shutdown()
-
-
-def _leave_interrupts_to_the_parent() -> None:
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 
 def _gather(results: Results, outcome: Outcome) -> None:

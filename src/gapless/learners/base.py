@@ -6,6 +6,7 @@ from typing import Any, Self
 
 import numpy as np
 from sklearn.base import BaseEstimator, MultiOutputMixin, RegressorMixin
+from sklearn.utils import get_tags
 from sklearn.utils.validation import (
     _check_sample_weight,
     check_is_fitted,
@@ -122,6 +123,24 @@ class OutputByOutput(Learner):
 
     def _predict(self, X: Array) -> Array:
         return np.column_stack([model.predict(X) for model in self.estimators_])
+
+
+def as_good_as(tags: Any, inner: Any) -> Any:
+    """Tags of a learner around another one, which does no better than that one does.
+
+    Parameters
+    ----------
+    tags : Tags
+        Its own, changed in place.
+    inner : estimator
+
+    Returns
+    -------
+    Tags
+    """
+    known = get_tags(inner).regressor_tags
+    tags.regressor_tags.poor_score = known is not None and known.poor_score
+    return tags
 
 
 def weighable(estimator: Any) -> Any:

@@ -5,9 +5,8 @@ from __future__ import annotations
 from typing import Any, ClassVar, Self
 
 from sklearn.base import clone
-from sklearn.utils import get_tags
 
-from gapless.learners.base import OutputByOutput
+from gapless.learners.base import OutputByOutput, as_good_as
 from gapless.learners.svr import MeanLossSVR
 
 
@@ -31,10 +30,7 @@ class PerOutput(OutputByOutput):
         self.estimator = estimator
 
     def __sklearn_tags__(self) -> Any:
-        tags = super().__sklearn_tags__()
-        inner = get_tags(self._chosen()).regressor_tags
-        tags.regressor_tags.poor_score = inner is not None and inner.poor_score
-        return tags
+        return as_good_as(super().__sklearn_tags__(), self._chosen())
 
     def _chosen(self) -> Any:
         return MeanLossSVR() if self.estimator is None else self.estimator

@@ -11,11 +11,10 @@ import numpy as np
 from sklearn.base import clone
 from sklearn.exceptions import ConvergenceWarning
 from sklearn.preprocessing import MinMaxScaler
-from sklearn.utils import get_tags
 from sklearn.utils.metaestimators import available_if
 from threadpoolctl import ThreadpoolController
 
-from gapless.learners.base import Learner
+from gapless.learners.base import Learner, as_good_as
 from gapless.learners.random_layer import relm
 from gapless.recording import Array
 
@@ -66,10 +65,7 @@ class Scaled(Learner):
         self.regressor = regressor
 
     def __sklearn_tags__(self) -> Any:
-        tags = super().__sklearn_tags__()
-        inner = get_tags(self._chosen()).regressor_tags
-        tags.regressor_tags.poor_score = inner is not None and inner.poor_score
-        return tags
+        return as_good_as(super().__sklearn_tags__(), self._chosen())
 
     def _chosen(self) -> Any:
         return relm() if self.regressor is None else self.regressor

@@ -3,18 +3,15 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import as_completed
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from gapless.errors import ConfigError, MissingExtraError
+from gapless.laboratory.pool import Progress, in_order
 from gapless.laboratory.study import Source
 from gapless.papers.jobs import Curve, Job, Outcome, Sample, Track, execute, prepare
 from gapless.papers.model import Experiment, Paper
 from gapless.papers.studies import STUDIES, Study
-
-Progress = Callable[[float], None]
-"""Told how many drives are done."""
 
 
 @dataclass
@@ -155,7 +152,7 @@ def reproduce(
         for k in range(count):
             source = None if experiment.drive is not None else sources[k]
             jobs.append((found, Job(experiment, ready, k + 1, source, shown=k == 0)))
-    outcomes = run([job for _, job in jobs], processes, progress)
+    outcomes = in_order(execute, [job for _, job in jobs], processes, progress)
     for (found, _), outcome in zip(jobs, outcomes, strict=True):
         _gather(found, outcome)
     studies, undone = _studied(paper, results)
@@ -172,38 +169,6 @@ def _studied(paper: Paper, results: Sequence[Results]) -> tuple[dict[str, Study]
         except MissingExtraError as error:
             undone[name] = str(error)
     return done, undone
-
-
-def run(jobs: Sequence[Job], processes: int, progress: Progress | None = None) -> Iterator[Outcome]:
-    """Outcomes in the order of the jobs.
-
-    Parameters
-    ----------
-    jobs : sequence of Job
-    processes : int
-    progress : callable, optional
-
-    Yields
-    ------
-    Outcome
-    """
-    tell = progress or (lambda done: None)
-    if processes == 1:
-        for k, job in enumerate(jobs):
-            yield execute(job)
-            tell(k + 1.0)
-        return
-    from gapless.sweeps.workers import Processes
-
-    pool = Processes(processes)
-    try:
-        futures = [pool.submit(execute, job) for job in jobs]
-        for k, future in enumerate(as_completed(futures)):
-            future.result()  # whatever went wrong ends it now
-            tell(k + 1.0)
-        yield from (future.result() for future in futures)
-    finally:
-        pool.dismiss()
 
 
 def _gather(results: Results, outcome: Outcome) -> None:

@@ -8,10 +8,10 @@ from functools import partial
 from io import BytesIO
 from typing import Any, Final
 
-from gapless.errors import MissingExtraError
 from gapless.papers.experiment import Reproduction, Results
 from gapless.papers.jobs import Curve, Track
 from gapless.papers.studies import Convergence, Fitness, Signals
+from gapless.reports.bench.figures import figure_class
 
 _COLOURS: Final = ("#4b545c", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#0072b2", "#a6761d")
 _DASHES: Final = ("-", "--", ":", "-.")
@@ -64,7 +64,7 @@ def figures(done: Reproduction) -> dict[str, bytes]:
     MissingExtraError
         If matplotlib is not installed.
     """
-    make = _figure_class()
+    make = figure_class()
     found = {}
     for name, draw in _plans(done):
         figure = make(figsize=_SIZE, layout="constrained")
@@ -73,15 +73,6 @@ def figures(done: Reproduction) -> dict[str, bytes]:
         figure.savefig(held, format="png", dpi=_DPI)
         found[re.sub("[^a-zA-Z0-9._]+", "-", name).strip("-")] = held.getvalue()
     return found
-
-
-def _figure_class() -> Callable[..., Any]:
-    try:
-        from matplotlib.figure import Figure
-    except ImportError as error:
-        raise MissingExtraError("matplotlib", "figures") from error
-    made: Callable[..., Any] = Figure
-    return made
 
 
 def _plans(done: Reproduction) -> Iterator[tuple[str, Draw]]:

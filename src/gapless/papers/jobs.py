@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import Final, NamedTuple
 
@@ -277,7 +276,6 @@ def keep(
     recording: Recording,
     scores: Scores,
     windows: tuple[Window, ...],
-    labels: Mapping[tuple[float, float], tuple[str, ...]] | None = None,
 ) -> None:
     """Measure a method in each window and keep what comes of it.
 
@@ -292,10 +290,8 @@ def keep(
         Of the run.
     windows : tuple of Window
         An outage that a label of the bench sets apart (standing still, before the motion) is left out.
-    labels : mapping, optional
-        By start and end of an outage; those of the scores if not given.
     """
-    known = labels if labels is not None else {(o.start, o.end): o.labels for o in scores.outages}
+    known = {(o.start, o.end): o.labels for o in scores.outages}
     for window in windows:
         if known.get((window.start, window.end)):
             continue

@@ -10,14 +10,11 @@ import numpy as np
 from gapless import attitude
 from gapless.alignment.coarse import Aligner, Start
 from gapless.events import Reading
-from gapless.feed import events
-from gapless.navigator import Navigator
 from gapless.recording import Array, Recording
 from gapless.scenarios import Outage
+from gapless.settings import Settings
 from gapless.solution import Solution
-from gapless.systems.adjust import graded
-from gapless.systems.build import stamps
-from gapless.systems.fuse import collect, decide_before, fold, settings_for, withhold_from
+from gapless.systems.fuse import fuse
 from gapless.systems.recipe import System
 
 
@@ -114,18 +111,12 @@ def fuse_from(
     Solution
     """
     assert truth.reference is not None
-    system = graded(system, recording)
-    open_sky = withhold_from(recording, outages)
-    decided = decide_before(open_sky, system, outages)
-    settings = settings_for(open_sky, system, decided, rate)
     tilt = error * np.random.default_rng([seed, 1]).standard_normal(3)
     true = attitude.from_euler(truth.reference.euler[0])
     told = Told(attitude.multiply(attitude.from_rotation_vector(tilt), true), error)
-    settings = replace(
-        settings,
-        aligner=cast(Aligner, told),
-        initial_sd={**settings.initial_sd, "attitude": error},
-    )
-    navigator = Navigator(settings)
-    fold(navigator, events(open_sky, stamps(system, decided.offsets)), recording.start)
-    return collect(recording, system, outages, navigator, decided)
+
+    def from_there(settings: Settings) -> Settings:
+        sd = {**settings.initial_sd, "attitude": error}
+        return replace(settings, aligner=cast(Aligner, told), initial_sd=sd)
+
+    return fuse(recording, system, outages, rate, finish=from_there)

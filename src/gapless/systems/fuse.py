@@ -23,6 +23,8 @@ from gapless.systems.recipe import System
 
 Progress = Callable[[float], None]
 """Told the time that navigation has reached [s after the first sample]."""
+Finish = Callable[[Settings], Settings]
+"""Changes what a navigator is built from."""
 DECISIONS_TAKEN_LATE = "decisions taken late"
 """Names the decision that tells that an outage had begun before anything could be decided."""
 
@@ -35,6 +37,7 @@ def fuse(
     causal: bool = False,
     progress: Progress | None = None,
     decided: Decided | None = None,
+    finish: Finish | None = None,
 ) -> Solution:
     """Navigate a recording.
 
@@ -53,6 +56,8 @@ def fuse(
     progress : callable, optional
     decided : Decided, optional
         What `decide_before` found, where it is known already.
+    finish : callable, optional
+        Has the last word on the navigator's settings.
 
     Returns
     -------
@@ -68,10 +73,10 @@ def fuse(
     recording, outages = prepared(recording, system), tuple(outages)
     open_sky = withhold_from(recording, outages)
     if causal:
-        navigator, decided = _on_the_way(open_sky, system, rate, progress)
+        navigator, decided = _on_the_way(open_sky, system, rate, progress, finish or _as_built)
     else:
         decided = decided or decide_before(open_sky, system, outages)
-        navigator = Navigator(settings_for(open_sky, system, decided, rate))
+        navigator = Navigator((finish or _as_built)(settings_for(open_sky, system, decided, rate)))
         fold(navigator, events(open_sky, stamps(system, decided.offsets)), recording.start, progress)
     return collect(recording, system, outages, navigator, decided)
 
@@ -168,17 +173,21 @@ def fold(navigator: Navigator, feed: Iterable[Event], start: float, progress: Pr
             progress(told)
 
 
+def _as_built(settings: Settings) -> Settings:
+    return settings
+
+
 STAGES = (60.0, 120.0, 240.0, 480.0)
 """When a causal run decides anew [s after the first sample]."""
 
 
 def _on_the_way(
-    recording: Recording, system: System, rate: float, progress: Progress | None
+    recording: Recording, system: System, rate: float, progress: Progress | None, finish: Finish
 ) -> tuple[Navigator, Decided]:
     """Decide at fixed data times from the past alone; the navigator goes on with what was decided."""
     cuts = [recording.start + s for s in STAGES if s < recording.duration]
     decided = decide(recording, system, recording.start)
-    navigator = Navigator(settings_for(recording, system, decided, rate, lateness=1.6))
+    navigator = Navigator(finish(settings_for(recording, system, decided, rate, lateness=1.6)))
     for begin, end in zip([-np.inf, *cuts], [*cuts, np.inf], strict=True):
         feed = events(recording, stamps(system, decided.offsets), begin, end)
         fold(navigator, feed, recording.start, progress)

@@ -65,14 +65,12 @@ class LearnerUse(Struct, forbid_unknown_fields=True, frozen=True):
     model: str = ""
 
 
-def check(use: BridgeUse, where: str) -> None:
+def check(use: BridgeUse) -> None:
     """See that the parts of a bridge go together.
 
     Parameters
     ----------
     use : BridgeUse
-    where : str
-        What to call the recipe in an error.
 
     Raises
     ------
@@ -85,36 +83,36 @@ def check(use: BridgeUse, where: str) -> None:
     if use.model == "none":
         return
     if use.model in BRIDGES:
-        _check_own(use, list(signature(BRIDGES[use.model]).parameters)[1:], where)
+        _check_own(use, list(signature(BRIDGES[use.model]).parameters)[1:])
         return
     if use.model not in MODELS:
         choices = ", ".join(("none", *MODELS, *BRIDGES))
-        raise ConfigError(f"{where}: bridge.model: {use.model!r} is unknown; choose from {choices}")
+        raise ConfigError(f"bridge.model: {use.model!r} is unknown; choose from {choices}")
     if use.parameters:
-        raise ConfigError(f"{where}: bridge.parameters are for bridges of your own; {use.model} has none")
+        raise ConfigError(f"bridge.parameters are for bridges of your own; {use.model} has none")
     unknown = [name for name in use.features if name not in FEATURES]
     if unknown:
-        raise ConfigError(f"{where}: bridge.features has {unknown[0]!r}; choose from {', '.join(FEATURES)}")
+        raise ConfigError(f"bridge.features has {unknown[0]!r}; choose from {', '.join(FEATURES)}")
     if not use.features and not use.window:
-        raise ConfigError(f"{where}: bridge shows its learner nothing; give bridge.features or bridge.window")
+        raise ConfigError("bridge shows its learner nothing; give bridge.features or bridge.window")
     if use.model == "increment" and (use.window or use.lags > 1):
-        raise ConfigError(f'{where}: bridge.window and bridge.lags are for model = "error"; leave them out')
+        raise ConfigError('bridge.window and bridge.lags are for model = "error"; leave them out')
     if use.model == "error" and not use.learns:
-        raise ConfigError(f"{where}: bridge.learns is empty; name position, velocity or both")
+        raise ConfigError("bridge.learns is empty; name position, velocity or both")
     if use.model == "error" and use.reference == "gnss" and "attitude" in use.learns:
-        raise ConfigError(f'{where}: GNSS shows no attitude; learn it with bridge.reference = "filter"')
+        raise ConfigError('GNSS shows no attitude; learn it with bridge.reference = "filter"')
 
 
-def _check_own(use: BridgeUse, known: list[str], where: str) -> None:
+def _check_own(use: BridgeUse, known: list[str]) -> None:
     """See that a bridge of the user's own is given what it takes, and nothing that it would not hear of."""
     for name in use.parameters:
         if name not in known:
             choices = ", ".join(known) or "none"
-            raise ConfigError(f"{where}: bridge.parameters: {use.model} has no {name!r}; it has {choices}")
+            raise ConfigError(f"bridge.parameters: {use.model} has no {name!r}; it has {choices}")
     plain = BridgeUse(model=use.model, parameters=use.parameters)
     for key in BridgeUse.__struct_fields__:
         if getattr(use, key) != getattr(plain, key):
-            raise ConfigError(f"{where}: bridge.{key} is not for {use.model}; give it bridge.parameters")
+            raise ConfigError(f"bridge.{key} is not for {use.model}; give it bridge.parameters")
 
 
 def bridges(
@@ -160,7 +158,7 @@ def bridges(
     return (
         LearnedBridge(
             model,
-            lambda: make(who.name, who.parameters, who.seed),
+            None if who.model else lambda: make(who.name, who.parameters, who.seed),
             heard,
             CalibratedNoise() if use.noise == "calibrated" else FilterNoise(),
             Schedule(use.samples, use.least, _seconds(use.train), use.interval, use.purge, slack=lateness),
@@ -186,7 +184,10 @@ def _saved(path: str, model: Model, use: BridgeUse) -> Trained | None:
     try:
         data = Path(path).read_bytes()
     except OSError as error:
-        raise ConfigError(f"learner.model: {path}: {error.strerror or error}") from None
+        why = error.strerror or error
+        raise ConfigError(
+            f"learner.model: {path}: {why}; give a file that gapless fuse --save-model wrote"
+        ) from None
     row = model.row(model.begin([], np.zeros(3)), unknown())
     return Trained(loads(data, path, len(row)), FilterNoise(), -math.inf, 0)
 

@@ -14,7 +14,8 @@ from msgspec import Struct
 from msgspec.structs import fields
 
 from gapless.errors import ConfigError
-from gapless.filters.adaptation.registry import KINDS, check
+from gapless.filters.adaptation.registry import KINDS
+from gapless.filters.adaptation.registry import check as check_rules
 from gapless.inertial.layout import EXTRAS
 from gapless.systems.learning import check as check_bridge
 from gapless.systems.prepare import denoiser
@@ -89,27 +90,29 @@ def checked(tables: Mapping[str, Any], where: str) -> System:
         With the path of the key and the valid choices.
     """
     system = typed(tables, System, where)
-    unknown = [name for name in system.filter.states if name not in EXTRAS]
-    if len(set(system.filter.states)) < len(system.filter.states):
-        raise ConfigError(f"{where}: filter.states names a block twice; name each once")
-    if unknown:
-        raise ConfigError(f"{where}: filter.states has {unknown[0]!r}; choose from {', '.join(EXTRAS)}")
-    if system.filter.moments == "cubature" and system.filter.correction == "feedforward":
-        raise ConfigError(
-            f"{where}: filter.moments = 'cubature' needs filter.correction = 'feedback': "
-            "its points surround a nominal state that is corrected"
-        )
-    for kind in KINDS:
-        try:
-            check(kind, getattr(system.adaptation, kind))
-        except ConfigError as error:
-            raise ConfigError(f"{where}: {error}") from None
-    check_bridge(system.bridge, where)
     try:
-        denoiser(system.denoise)
+        _check(system)
     except ConfigError as error:
         raise ConfigError(f"{where}: {error}") from None
     return system
+
+
+def _check(system: System) -> None:
+    """See that the parts of a system go together."""
+    unknown = [name for name in system.filter.states if name not in EXTRAS]
+    if len(set(system.filter.states)) < len(system.filter.states):
+        raise ConfigError("filter.states names a block twice; name each once")
+    if unknown:
+        raise ConfigError(f"filter.states has {unknown[0]!r}; choose from {', '.join(EXTRAS)}")
+    if system.filter.moments == "cubature" and system.filter.correction == "feedforward":
+        raise ConfigError(
+            "filter.moments = 'cubature' needs filter.correction = 'feedback': "
+            "its points surround a nominal state that is corrected"
+        )
+    for kind in KINDS:
+        check_rules(kind, getattr(system.adaptation, kind))
+    check_bridge(system.bridge)
+    denoiser(system.denoise)
 
 
 def typed(tables: Mapping[str, Any], kind: type[T], where: str) -> T:

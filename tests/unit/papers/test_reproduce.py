@@ -132,7 +132,7 @@ def test_without_matplotlib(done, monkeypatch):
     def missing():
         raise MissingExtraError("matplotlib", "figures")
 
-    monkeypatch.setattr(drawing, "_figure_class", missing)
+    monkeypatch.setattr(drawing, "figure_class", missing)
     with pytest.raises(MissingExtraError, match=r"pip install 'gapless\[figures\]'"):
         drawing.figures(done)
 

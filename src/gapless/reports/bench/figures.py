@@ -48,7 +48,7 @@ def write_figures(folder: Path, suffix: str) -> list[Path]:
     ConfigError
         If a file is missing or is not what a bench writes.
     """
-    make = _figure_class()
+    make = figure_class()
     written = []
     for name, draw in _plans(read_bench(folder)):
         figure = make(figsize=_ONE_COLUMN, layout="constrained")
@@ -63,7 +63,18 @@ def write_figures(folder: Path, suffix: str) -> list[Path]:
     return written
 
 
-def _figure_class() -> Callable[..., Any]:
+def figure_class() -> Callable[..., Any]:
+    """Matplotlib's `Figure`, without its windows.
+
+    Returns
+    -------
+    callable
+
+    Raises
+    ------
+    MissingExtraError
+        Where it is not installed.
+    """
     try:
         from matplotlib.figure import Figure
     except ImportError as error:
