@@ -9,7 +9,8 @@ from dataclasses import dataclass, field
 from gapless.errors import ConfigError, MissingExtraError
 from gapless.laboratory.pool import Progress, in_order
 from gapless.laboratory.study import Source
-from gapless.papers.jobs import Curve, Job, Outcome, Sample, Track, execute, prepare
+from gapless.papers import drives, road
+from gapless.papers.jobs import Curve, Job, Outcome, Sample, Track, prepare
 from gapless.papers.model import Experiment, Paper
 from gapless.papers.studies import STUDIES, Study
 
@@ -157,6 +158,25 @@ def reproduce(
         _gather(found, outcome)
     studies, undone = _studied(paper, results)
     return Reproduction(paper, tuple(results), time.perf_counter() - begun, studies, undone)
+
+
+def execute(job: Job) -> Outcome:
+    """What one process does.
+
+    Parameters
+    ----------
+    job : Job
+
+    Returns
+    -------
+    Outcome
+
+    Raises
+    ------
+    GaplessError
+        If a recording cannot be read.
+    """
+    return drives.execute(job) if job.source is None else road.execute(job)
 
 
 def _studied(paper: Paper, results: Sequence[Results]) -> tuple[dict[str, Study], dict[str, str]]:

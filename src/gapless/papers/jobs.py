@@ -2,21 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import Final, NamedTuple
 
-import numpy as np
-
 from gapless.errors import ConfigError, GaplessError
-from gapless.evaluation import Errors, Scores, score
+from gapless.evaluation import Errors, Scores
 from gapless.laboratory.study import Source
 from gapless.papers.measure import measure
-from gapless.papers.model import SAME_CLOCK, WHITE, Drive, Experiment, Method, Window
-from gapless.papers.start import fuse_from
+from gapless.papers.model import SAME_CLOCK, WHITE, Experiment, Method, Window
 from gapless.recording import Array, Recording
 from gapless.scenarios import Outage
-from gapless.sensors import grade
-from gapless.simulate import simulate, spikes
 from gapless.solution import Solution
 from gapless.systems.adjust import changed
 from gapless.systems.fuse import fuse
@@ -162,73 +157,6 @@ def prepare(experiment: Experiment) -> tuple[tuple[Ready, ...], dict[str, str]]:
     return tuple(ready), missing
 
 
-def make(drive: Drive, seed: int) -> Recording:
-    """A drive of an experiment.
-
-    Parameters
-    ----------
-    drive : Drive
-    seed : int
-        Everything that is drawn follows from it.
-
-    Returns
-    -------
-    Recording
-    """
-    of_path, of_faults = (np.random.default_rng([seed, k]) for k in (2, 3))
-    segments = drive.segments if isinstance(drive.segments, str) else drive.segments(of_path)
-    made = simulate(
-        segments,
-        replace(grade(drive.grade), rate=drive.rate),
-        drive.duration,
-        seed,
-        receiver=drive.receiver,
-        origin=drive.origin,
-        heading=drive.heading,
-    )
-    gnss = made.gnss
-    for fault in drive.faults:
-        gnss, _ = spikes(gnss, of_faults, fault.count, fault.position, fault.velocity)
-    return replace(made, name=f"seed {seed}", gnss=gnss)
-
-
-def execute(job: Job) -> Outcome:
-    """Navigate a drive with every method, and score.
-
-    Parameters
-    ----------
-    job : Job
-
-    Returns
-    -------
-    Outcome
-
-    Raises
-    ------
-    GaplessError
-        If the recording cannot be read.
-    """
-    if job.source is not None:
-        from gapless.papers.road import execute as on_the_road
-
-        return on_the_road(job)
-    drive = job.experiment.drive
-    assert drive is not None
-    recording = make(drive, job.seed)
-    outcome = Outcome()
-    for method, system in job.ready:
-        try:
-            solution = _navigate(method, system, recording, drive, job.seed)
-        except BROKEN as error:
-            outcome.failed[method.name] = told(error)
-            continue
-        scores = score(solution, recording)
-        keep(outcome, job, method, recording, scores, drive.windows)
-    if job.shown:
-        outcome.tracks.append(_track(job.experiment.name, recording))
-    return outcome
-
-
 def told(error: Exception) -> str:
     """Why a method has no row, in a line.
 
@@ -243,13 +171,6 @@ def told(error: Exception) -> str:
     """
     first = next(iter(str(error).splitlines()), "")
     return str(error) if isinstance(error, GaplessError) else f"{type(error).__name__}: {first}"
-
-
-def _navigate(method: Method, system: System, recording: Recording, drive: Drive, seed: int) -> Solution:
-    blind = replace(recording, reference=None)
-    if drive.start is not None:
-        return fuse_from(blind, recording, system, drive.outages, drive.start.error, seed)
-    return navigate(method, system, blind, drive.outages)
 
 
 def navigate(method: Method, system: System, recording: Recording, outages: tuple[Outage, ...]) -> Solution:
@@ -309,12 +230,3 @@ def keep(
 
 def _curve(experiment: str, method: str, where: str, errors: Errors, begin: float) -> Curve:
     return Curve(experiment, method, where, errors.time - begin, errors.position, errors.velocity)
-
-
-def _track(experiment: str, recording: Recording) -> Track:
-    from gapless.motion import offset_ned
-
-    rows = recording.reference
-    assert rows is not None
-    ned = offset_ned(rows.lla, np.broadcast_to(rows.lla[0], rows.lla.shape))
-    return Track(experiment, rows.time - recording.start, ned[:, [1, 0]], rows.v_n[:, [1, 0]])

@@ -10,7 +10,8 @@ import numpy as np
 
 from gapless.evaluation import score
 from gapless.evaluation.statistics import rms
-from gapless.papers.jobs import make, navigate, prepare
+from gapless.papers.drives import make
+from gapless.papers.jobs import navigate, prepare
 from gapless.papers.model import Experiment, Method
 from gapless.recording import Array, Imu, Recording
 from gapless.scenarios import Outage

@@ -13,8 +13,7 @@ from gapless.recording import Recording
 from gapless.sensors import grade_names
 from gapless.systems.learning import BridgeUse
 from gapless.systems.library import checked, load, names
-from gapless.systems.prepare import DenoiseUse
-from gapless.systems.recipe import Clock, System
+from gapless.systems.recipe import Clock, DenoiseUse, System
 from gapless.systems.values import Offset
 
 PARTS: Final = {"bridge": BridgeUse(), "denoise": DenoiseUse()}

@@ -4,31 +4,15 @@ from __future__ import annotations
 
 import inspect
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
-
-from msgspec import Struct
+from typing import TYPE_CHECKING
 
 from gapless.errors import ConfigError
 from gapless.recording import Imu, Recording
 from gapless.solution import Decision
-from gapless.systems.values import WholeNumber
+from gapless.systems.recipe import DenoiseUse, System
 
 if TYPE_CHECKING:
     from gapless.denoise import Denoiser
-    from gapless.systems.recipe import System
-
-
-class DenoiseUse(Struct, forbid_unknown_fields=True, frozen=True):
-    """How inertial signals are denoised before anything else; without a method, they are not.
-
-    `window` 0 denoises the whole record, which sees the future: for post-processing. Otherwise every
-    sample knows of earlier ones only, through windows of so many samples, one every `step` samples.
-    """
-
-    method: str = "none"
-    window: WholeNumber = 512
-    step: WholeNumber = 128
-    parameters: dict[str, Any] = {}
 
 
 _done: dict[tuple[int, str, int, int, str], tuple[Imu, Imu]] = {}

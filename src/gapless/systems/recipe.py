@@ -5,15 +5,14 @@ Angles are in degrees and everything else in SI units, as a user writes them.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import msgspec
 from msgspec import Meta, Struct
 
 from gapless.filters.adaptation.registry import RULES
 from gapless.systems.learning import BridgeUse, LearnerUse
-from gapless.systems.prepare import DenoiseUse
-from gapless.systems.values import Angle, Auto, NonNegative, Offset, Positive
+from gapless.systems.values import Angle, Auto, NonNegative, Offset, Positive, WholeNumber
 
 
 class Imu(Struct, forbid_unknown_fields=True, frozen=True):
@@ -137,6 +136,19 @@ class Alignment(Struct, forbid_unknown_fields=True, frozen=True):
     min_speed: Positive = 5.0
     window: Positive = 4.0
     tilt_sd: Positive = 4.0
+
+
+class DenoiseUse(Struct, forbid_unknown_fields=True, frozen=True):
+    """How inertial signals are denoised before anything else; without a method, they are not.
+
+    `window` 0 denoises the whole record, which sees the future: for post-processing. Otherwise every
+    sample knows of earlier ones only, through windows of so many samples, one every `step` samples.
+    """
+
+    method: str = "none"
+    window: WholeNumber = 512
+    step: WholeNumber = 128
+    parameters: dict[str, Any] = {}
 
 
 class System(Struct, forbid_unknown_fields=True, frozen=True):

@@ -8,7 +8,7 @@ import pytest
 
 from gapless.errors import ConfigError
 from gapless.papers.compare import claims_of
-from gapless.papers.jobs import make
+from gapless.papers.drives import make
 from gapless.papers.library import PAPERS, paper
 from gapless.papers.measure import measure
 from gapless.papers.wang2018 import DRIVE

@@ -13,9 +13,10 @@ from small_papers import DRIVE, experiment
 from gapless.errors import ConfigError, MissingExtraError
 from gapless.laboratory.render import as_text
 from gapless.papers import figures as drawing
-from gapless.papers.experiment import reproduce
+from gapless.papers.drives import make
+from gapless.papers.experiment import execute, reproduce
 from gapless.papers.folder import FILES, means, writers
-from gapless.papers.jobs import Job, execute, make, prepare
+from gapless.papers.jobs import Job, prepare
 from gapless.papers.page import summary
 from gapless.papers.start import fuse_from
 from gapless.papers.tables import number, tables
@@ -106,14 +107,14 @@ def test_a_method_that_cannot_run_is_told_of_and_the_others_go_on():
 
 
 def test_numbers_that_run_away_end_their_method_alone(monkeypatch):
-    from gapless.papers import jobs
+    from gapless.papers import drives
 
     def diverges(method, system, recording, outages):
         if method.name == "car":
             raise ValueError("Input X contains NaN.\nand much advice")
         return fuse(recording, system, outages)
 
-    monkeypatch.setattr(jobs, "navigate", diverges)
+    monkeypatch.setattr(drives, "navigate", diverges)
     ready, _ = prepare(experiment())
     outcome = execute(Job(experiment(), ready, 1))
     assert outcome.failed == {"car": "ValueError: Input X contains NaN."}

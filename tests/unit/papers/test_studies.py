@@ -7,9 +7,9 @@ import pytest
 
 from gapless.motion import offset_ned
 from gapless.papers import studies
+from gapless.papers.drives import make
 from gapless.papers.experiment import Reproduction
 from gapless.papers.figures import figures
-from gapless.papers.jobs import make
 from gapless.papers.liu2019 import CHANNELS
 from gapless.papers.model import Receiver, Window
 from gapless.papers.tables import tables
