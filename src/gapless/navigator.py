@@ -208,6 +208,9 @@ class Navigator:
         if not state.aligned:
             state.clock = float(block.time[last - 1])
             return
+        if state.bridges and last > first:
+            for bridge in state.bridges:
+                bridge.feel(block.rows(first, last))
         b, often = state.belief, s.row < s.tick
         if state.fade > 1.0:  # the epoch is over
             b.fade(state.fade, s.ceiling)

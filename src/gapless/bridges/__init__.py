@@ -2,14 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import TYPE_CHECKING, Final
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING, Any, Final
 
 if TYPE_CHECKING:
     from gapless.bridges.base import Bridge
+    from gapless.measurements.base import Sensor
 
-BRIDGES: Final[dict[str, Callable[..., Bridge]]] = {}
-"""Bridges of your own by the names that recipes call them by: ``BRIDGES["mine"] = Mine``.
+
+
+def _wheels(sensors: Mapping[str, Sensor], **parameters: Any) -> Bridge:
+    from gapless.bridges.wheels import Wheels
+
+    return Wheels(**parameters)
+
+
+BRIDGES: Final[dict[str, Callable[..., Bridge]]] = {"wheels": _wheels}
+"""Bridges by the names that recipes call them by, your own among them: ``BRIDGES["mine"] = Mine``.
 
 Each is called with the sensors by channel (mapping of str to `Sensor`), and the recipe's
 `bridge.parameters` by name.

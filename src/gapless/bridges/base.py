@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple, Protocol, Self
+from typing import ClassVar, NamedTuple, Protocol, Self
 
-from gapless.events import Motion, Reading
+from gapless.events import ImuBlock, Motion, Reading
 from gapless.inertial.belief import Belief
 from gapless.measurements.base import Observation
 from gapless.solution import Decision
@@ -29,7 +29,23 @@ class Bridge(Protocol):
 
     It is copied with the navigator, often: `copy` must be cheap. It may not look at a clock, or the
     same data would give other bits elsewhere.
+
+    Attributes
+    ----------
+    reach : float
+        Seconds of past velocity that the belief's trail must hold for it.
     """
+
+    reach: ClassVar[float]
+
+    def feel(self, block: ImuBlock) -> None:
+        """Take in the samples that are propagated next.
+
+        Parameters
+        ----------
+        block : ImuBlock
+        """
+        ...
 
     def hear(self, belief: Belief, reading: Reading, used: bool) -> None:
         """Learn from a reading.

@@ -6,7 +6,7 @@ import math
 import statistics
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any, NamedTuple, Self
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
 
 import numpy as np
 
@@ -15,7 +15,7 @@ from gapless.bridges.epochs import NOWHERE, Epoch
 from gapless.bridges.model import Model
 from gapless.bridges.noise import FilterNoise, Noise, rehearse
 from gapless.bridges.shadow import Shadow, difference
-from gapless.events import Motion, Reading
+from gapless.events import ImuBlock, Motion, Reading
 from gapless.inertial import propagate as at
 from gapless.inertial.belief import Belief
 from gapless.inertial.coast import STATE
@@ -120,10 +120,14 @@ class LearnedBridge:
     count: int = 0
     pace: float = math.nan
     settled: float = -math.inf
+    reach: ClassVar[float] = 0.0
 
     def __post_init__(self) -> None:
         if math.isnan(self.pace):
             self.pace = self.schedule.interval
+
+    def feel(self, block: ImuBlock) -> None:
+        """See `Bridge`: the shadow goes by ticks."""
 
     def hear(self, belief: Belief, reading: Reading, used: bool) -> None:
         """See `Bridge`; a rejected fix breaks the silence too.

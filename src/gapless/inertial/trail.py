@@ -67,6 +67,31 @@ class Trail:
         if self.length > 0.0:
             self.corrected = self.corrected + dv
 
+    def behind(self, window: float) -> tuple[Array, Array]:
+        """By how much past velocities fell short of the present one, were it not for corrections since.
+
+        Parameters
+        ----------
+        window : float
+            How far back [s].
+
+        Returns
+        -------
+        times : ndarray, shape (k,)
+            The last one is the present; the first lies before the window where the trail reaches so far.
+        gained : ndarray, shape (k, 3)
+            Velocity gained since the present, so mostly the negative of what was gained up to it [m/s].
+        """
+        if not self.marks:
+            return np.zeros(0), np.zeros((0, 3))
+        begin = self.marks[-1].time - window
+        k = len(self.marks) - 1
+        while k > 0 and self.marks[k].time > begin:
+            k -= 1
+        kept = list(self.marks)[k:]
+        gained = np.array([mark.gained for mark in kept])
+        return np.array([mark.time for mark in kept]), gained - gained[-1]
+
     def lag(self, window: float) -> tuple[Array, Array]:
         """By how much the present velocity exceeds its mean over a window that ends now.
 

@@ -59,7 +59,8 @@ def settings(
     names = states(system, recording)
     angles, angle_sd = mounting
     sensors, lateness = _sensors(system, recording, angles), _lateness(stamps(system, offsets))
-    rules = system.adaptation
+    rules, spoken = system.adaptation, bridges(system.bridge, system.learner, sensors, lateness)
+    averaged = 1.5 * system.gnss.velocity_averaging + 0.2 if system.gnss.velocity_averaging else 0.0
     tables = {name: getattr(rules, name) for name in RULES}
     return Settings(
         layout=Layout(names),
@@ -79,14 +80,14 @@ def settings(
         initial=_initial(names, angles, system, recording),
         sensors=sensors,
         constraints=_constraints(system, angles),
-        bridges=bridges(system.bridge, system.learner, sensors, lateness),
+        bridges=spoken,
         adaptation={kind: chain(kind, getattr(rules, kind), tables) for kind in KINDS},
         aligner=Aligner(float(angles[1]), system.alignment.min_speed, system.alignment.window),
         tick=system.filter.tick,
         period=system.filter.covariance_period,
         row=row,
         lateness=lateness,
-        trail=1.5 * system.gnss.velocity_averaging + 0.2 if system.gnss.velocity_averaging else 0.0,
+        trail=max(averaged, *(bridge.reach for bridge in spoken), 0.0),
         misalignment=float(imu["misalignment"]),
         wander_time=system.gnss.wander_time,
         cubature=system.filter.moments == "cubature",

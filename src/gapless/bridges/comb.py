@@ -1,0 +1,191 @@
+"""What a car's spectra have in common over orders: gathered with forgetting, and the comb that is left."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final, NamedTuple
+
+import numpy as np
+
+from gapless._numba import kernel
+from gapless.bridges.orders import BINS, CHANNELS, LOWEST, ORDERS, STEP, WIDTH, Spectrum, evidence, gather
+from gapless.recording import Array
+
+FORGET: Final = 300.0
+"""Spectra after which one counts a third."""
+DOUBT: Final = 3.0
+"""Spectra without a comb that a template is mixed with: it begins at none."""
+TREND: Final = 15
+"""Half width of the moving mean over orders, taken twice, that is no comb [steps]."""
+SMOOTH: Final = 2
+"""Half width of the moving mean over the bins of the mean spectrum."""
+SPEED_BIN, SPEED_BINS = 0.5, 140
+"""Speeds are counted in so many bins of this width [m/s]."""
+
+
+class Comb(NamedTuple):
+    """The template of a car.
+
+    Parameters
+    ----------
+    height : ndarray, shape (6, orders)
+        Log power of the comb above what is around it, shrunk by its standard error.
+    variance : ndarray, shape (6,)
+        Of a single spectrum's log power, by channel.
+    mean : ndarray, shape (6, BINS)
+        Mean spectrum over frequency: what stays where it is when the speed changes.
+    windows : float
+        From so many spectra, those long ago counted less.
+    """
+
+    height: Array
+    variance: Array
+    mean: Array
+    windows: float
+
+    def evidence(self, heard: Spectrum, speeds: Array) -> Array:
+        """Log likelihood of speeds against that of no comb; see `orders.evidence`.
+
+        Parameters
+        ----------
+        heard : Spectrum
+        speeds : ndarray, shape (k,)
+            [m/s]
+
+        Returns
+        -------
+        ndarray, shape (k,)
+        """
+        return evidence(heard.log - self.mean, heard.top, self.height, self.variance, speeds)
+
+
+@dataclass
+class Memory:
+    """Sums over spectra; arrays are replaced, never changed, so that copies may share them.
+
+    Parameters
+    ----------
+    top : float
+        Of the spectra [Hz].
+    total, count, square : ndarray, shape (6, orders), (orders,), (6,)
+        Sums over orders of log power, of spectra, and of squares.
+    mean : ndarray, shape (6, BINS)
+        Sum over spectra by frequency.
+    speeds : ndarray, shape (SPEED_BINS,)
+        Spectra by speed.
+    windows : float
+    """
+
+    top: float
+    total: Array
+    count: Array
+    square: Array
+    mean: Array
+    speeds: Array
+    windows: float = 0.0
+
+    @classmethod
+    def empty(cls, top: float) -> Memory:
+        """Nothing heard yet.
+
+        Parameters
+        ----------
+        top : float
+
+        Returns
+        -------
+        Memory
+        """
+        shape = (CHANNELS, ORDERS)
+        return cls(
+            top,
+            np.zeros(shape),
+            np.zeros(ORDERS),
+            np.zeros(CHANNELS),
+            np.zeros((CHANNELS, BINS)),
+            np.zeros(SPEED_BINS),
+        )
+
+    def after(self, heard: Spectrum) -> Memory:
+        """The memory with one more spectrum.
+
+        Parameters
+        ----------
+        heard : Spectrum
+
+        Returns
+        -------
+        Memory
+        """
+        keep = np.exp(-1.0 / FORGET)
+        total, count, square = self.total * keep, self.count * keep, self.square * keep
+        gather(heard.log, heard.top, heard.speed, total, count, square)
+        speeds = self.speeds * keep
+        speeds[min(SPEED_BINS - 1, int(heard.speed / SPEED_BIN))] += 1.0
+        mean, windows = self.mean * keep + heard.log, self.windows * keep + 1.0
+        return Memory(heard.top, total, count, square, mean, speeds, windows)
+
+    def comb(self) -> Comb:
+        """What is left over orders when the mean spectrum and the trend are taken away.
+
+        Returns
+        -------
+        Comb
+        """
+        mean = moving_mean(self.mean / max(self.windows, 1.0), SMOOTH)
+        fixed = unmoved(mean, self.top, self.speeds)
+        count = self.count + DOUBT
+        spread = self.square - (fixed**2 / np.maximum(self.count, 1.0)).sum(axis=1)
+        variance = np.maximum(spread / max(self.count.sum(), 1.0), 0.05)
+        raw = (self.total - fixed) / count
+        raw -= moving_mean(moving_mean(raw, TREND), TREND)
+        doubt = variance[:, None] / count
+        height = raw * np.maximum(0.0, 1.0 - doubt / np.maximum(raw**2, 1e-12))
+        return Comb(np.ascontiguousarray(height), variance, mean, self.windows)
+
+
+@kernel
+def unmoved(mean: Array, top: float, speeds: Array) -> Array:
+    """What the mean spectrum alone would have put into the sums over orders.
+
+    Parameters
+    ----------
+    mean : ndarray, shape (6, BINS)
+    top : float
+        [Hz]
+    speeds : ndarray, shape (SPEED_BINS,)
+        Spectra by speed.
+
+    Returns
+    -------
+    ndarray, shape (6, orders)
+    """
+    out = np.zeros((CHANNELS, ORDERS))
+    for b in range(SPEED_BINS):
+        if speeds[b] > 1e-9:
+            for j in range(ORDERS):
+                f = (LOWEST + STEP * j) * (b + 0.5) * SPEED_BIN / WIDTH
+                if f * WIDTH >= top:
+                    break
+                k = int(f)
+                w = f - k
+                for c in range(CHANNELS):
+                    out[c, j] += speeds[b] * ((1.0 - w) * mean[c, k] + w * mean[c, k + 1])
+    return out
+
+
+def moving_mean(rows: Array, half: int) -> Array:
+    """Mean over 2 half + 1 columns, the outermost repeated beyond the ends.
+
+    Parameters
+    ----------
+    rows : ndarray, shape (m, n)
+    half : int
+
+    Returns
+    -------
+    ndarray, shape (m, n)
+    """
+    wide = np.pad(rows, ((0, 0), (half + 1, half)), mode="edge")
+    total = wide.cumsum(axis=1)
+    return np.asarray((total[:, 2 * half + 1 :] - total[:, : -2 * half - 1]) / (2 * half + 1))

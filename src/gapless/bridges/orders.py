@@ -1,0 +1,246 @@
+"""Order spectra: what shakes the box, over cycles per metre instead of cycles per second.
+
+A turning wheel excites a comb of harmonics at orders k / circumference. In an ordinary spectrum it is
+smeared, since the speed changes within a window; in a time warped to constant speed it is a comb again
+(order tracking; Fyfe & Munck 1997). `gather` sums what spectra have in common over orders, whatever
+their speed: the template of this car (`comb`); `evidence` is how much better a spectrum fits it at a speed than
+not at all.
+"""
+
+from __future__ import annotations
+
+from typing import Any, Final, NamedTuple
+
+import numpy as np
+
+from gapless._numba import inline, kernel
+from gapless.recording import Array
+
+CHANNELS: Final = 6
+WINDOW: Final = 4.0
+"""Length of a spectrum's window [s]."""
+TOP: Final = 40.0
+"""Above this frequency the comb of a wheel adds nothing [Hz]."""
+PAD: Final = 4
+"""Windows are padded with zeros to so many times their length."""
+WIDTH: Final = 1.0 / (PAD * WINDOW)
+"""Of a bin [Hz]."""
+BINS: Final = int(TOP / WIDTH) + 2
+LEAST_POINTS: Final = 512
+"""Of a window: enough for `TOP`."""
+LOWEST, STEP, ORDERS = 0.2, 0.01, 311
+"""First order of a template, distance of orders, and how many there are [cycles/m]."""
+BASE: Final = 61
+"""Bins of the running median, every other one: 7.6 Hz in all."""
+TINY: Final = 1e-12
+
+
+@kernel
+def warp(samples: Array, times: Array, speeds: Array, begin: float, end: float, n: int) -> Array:
+    """Signals over a time in which the speed is constant, with a Hann window on them.
+
+    Parameters
+    ----------
+    samples : ndarray, shape (k, 7)
+        Time [s], rates [rad/s], specific forces [m/s^2].
+    times, speeds : ndarray, shape (m,)
+        Speed history, within which the window must lie [s], [m/s]; positive.
+    begin, end : float
+        The window [s].
+    n : int
+        Points, equally far apart on the road.
+
+    Returns
+    -------
+    ndarray, shape (6, n)
+    """
+    m = times.size
+    way = np.zeros(m)
+    for i in range(1, m):
+        way[i] = way[i - 1] + 0.5 * (speeds[i] + speeds[i - 1]) * (times[i] - times[i - 1])
+    first, last = _between(times, way, begin), _between(times, way, end)
+    out = np.empty((CHANNELS, n))
+    mean = np.zeros(CHANNELS)
+    i, j = 1, 1
+    for p in range(n):
+        s = first + (last - first) * p / n
+        while i < m - 1 and way[i] < s:
+            i += 1
+        t = times[i - 1] + (s - way[i - 1]) / max(way[i] - way[i - 1], TINY) * (times[i] - times[i - 1])
+        while j < samples.shape[0] - 1 and samples[j, 0] < t:
+            j += 1
+        share = (t - samples[j - 1, 0]) / (samples[j, 0] - samples[j - 1, 0])
+        share = min(max(share, 0.0), 1.0)
+        for c in range(CHANNELS):
+            a = (1.0 - share) * samples[j - 1, c + 1] + share * samples[j, c + 1]
+            out[c, p] = a
+            mean[c] += a / n
+    for p in range(n):
+        w = 0.5 - 0.5 * np.cos(2.0 * np.pi * p / (n - 1))
+        for c in range(CHANNELS):
+            out[c, p] = (out[c, p] - mean[c]) * w
+    return out
+
+
+@inline
+def _between(x: Any, y: Any, at: Any) -> Any:
+    """Linear interpolation in a short increasing table."""
+    i = 1
+    while i < x.size - 1 and x[i] < at:
+        i += 1
+    return y[i - 1] + (at - x[i - 1]) / max(x[i] - x[i - 1], TINY) * (y[i] - y[i - 1])
+
+
+@kernel
+def whiten(power: Array) -> Array:
+    """Log power less its running median over frequency: lines stay, colour goes.
+
+    Parameters
+    ----------
+    power : ndarray, shape (6, k)
+
+    Returns
+    -------
+    ndarray, shape (6, BINS)
+    """
+    half = BASE // 2
+    n = min(power.shape[1] // 2, BINS // 2 + half + 1)
+    out, log, window = np.empty((CHANNELS, BINS)), np.empty(n), np.empty(BASE)
+    for c in range(CHANNELS):
+        for i in range(n):
+            log[i] = np.log(power[c, 2 * i] + TINY)
+        for i in range(BASE):
+            window[i] = log[max(0, i - half)]
+        window.sort()
+        for i in range((BINS + 1) // 2):
+            if i > 0:
+                _exchange(window, log[max(0, i - 1 - half)], log[min(n - 1, i + half)])
+            for k in (2 * i, 2 * i + 1):
+                if k < BINS:
+                    out[c, k] = np.log(power[c, k] + TINY) - window[half]
+    return out
+
+
+@inline
+def _exchange(window: Any, gone: Any, new: Any) -> None:
+    """Replace a value in a sorted window."""
+    k = np.searchsorted(window, gone)
+    while k > 0 and window[k - 1] > new:
+        window[k] = window[k - 1]
+        k -= 1
+    while k < window.size - 1 and window[k + 1] < new:
+        window[k] = window[k + 1]
+        k += 1
+    window[k] = new
+
+
+class Spectrum(NamedTuple):
+    """A whitened spectrum of one window.
+
+    Parameters
+    ----------
+    log : ndarray, shape (6, bins)
+        Log power above the running median.
+    top : float
+        No bin from this frequency on counts [Hz].
+    speed : float
+        Mean speed in the window [m/s].
+    """
+
+    log: Array
+    top: float
+    speed: float
+
+
+def spectrum(samples: Array, times: Array, speeds: Array, end: float, top: float) -> Spectrum:
+    """Order spectrum of the window that ends at a time.
+
+    Parameters
+    ----------
+    samples : ndarray, shape (k, 7)
+        As `warp` takes them; they cover the window.
+    times, speeds : ndarray, shape (m,)
+    end : float
+        [s]
+    top : float
+        Highest frequency [Hz].
+
+    Returns
+    -------
+    Spectrum
+    """
+    rate = (len(samples) - 1) / (samples[-1, 0] - samples[0, 0])
+    n = max(LEAST_POINTS, 1 << int(np.ceil(np.log2(WINDOW * rate))))
+    x = warp(samples, times, speeds, end - WINDOW, end, n)
+    f = np.fft.rfft(x, PAD * n, axis=1)
+    inside = (times >= end - WINDOW) & (times <= end)
+    return Spectrum(whiten(f.real**2 + f.imag**2), min(top, TOP), float(speeds[inside].mean()))
+
+
+@kernel
+def gather(
+    log: Array, top: float, speed: float, total: Array, count: Array, square: Array
+) -> None:
+    """Add a spectrum to sums over orders.
+
+    Parameters
+    ----------
+    log, top, speed
+        As in `Spectrum`.
+    total : ndarray, shape (6, orders)
+    count : ndarray, shape (orders,)
+    square : ndarray, shape (6,)
+    """
+    for j in range(ORDERS):
+        f = (LOWEST + STEP * j) * speed / WIDTH
+        k = int(f)
+        if f * WIDTH >= top:
+            break
+        w = f - k
+        count[j] += 1.0
+        for c in range(CHANNELS):
+            a = (1.0 - w) * log[c, k] + w * log[c, k + 1]
+            total[c, j] += a
+            square[c] += a * a
+
+
+@kernel
+def evidence(
+    log: Array, top: float, comb: Array, variance: Array, speeds: Array
+) -> Array:
+    """Log likelihood of speeds against that of no comb at all.
+
+    Sum over channels and orders of (y T - T^2 / 2) / s^2: y ~ N(T, s^2) against N(0, s^2).
+
+    Parameters
+    ----------
+    log : ndarray, shape (6, bins)
+        A whitened spectrum less the mean one.
+    top : float
+        As in `Spectrum`.
+    comb : ndarray, shape (6, orders)
+        The template T.
+    variance : ndarray, shape (6,)
+        s^2 by channel.
+    speeds : ndarray, shape (k,)
+        [m/s]
+
+    Returns
+    -------
+    ndarray, shape (k,)
+        Neighbouring orders are taken for independent, which they are not: to be tempered.
+    """
+    found = np.zeros(speeds.size)
+    for i in range(speeds.size):
+        for j in range(ORDERS):
+            f = (LOWEST + STEP * j) * speeds[i] / WIDTH
+            if f * WIDTH >= top:
+                break
+            k = int(f)
+            w = f - k
+            for c in range(CHANNELS):
+                t = comb[c, j]
+                if t != 0.0:
+                    y = (1.0 - w) * log[c, k] + w * log[c, k + 1]
+                    found[i] += (y - 0.5 * t) * t / variance[c]
+    return found

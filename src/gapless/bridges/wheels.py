@@ -1,0 +1,257 @@
+"""The wheel-order odometer: hears in the IMU how fast the wheels turn.
+
+While GNSS speaks it learns the comb of this car over orders; while GNSS is silent it finds the speed at
+which a spectrum fits that comb best, around what the filter says, and whether it fits better than no
+comb at all. What it says is a speed: (z, H, R) on the length of the velocity.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field, replace
+from typing import ClassVar, Final, NamedTuple, Self
+
+import numpy as np
+
+from gapless.bridges.base import Saying
+from gapless.bridges.comb import Comb, Memory
+from gapless.bridges.orders import WINDOW, Spectrum, spectrum
+from gapless.events import ImuBlock, Motion, Reading
+from gapless.inertial.belief import Belief
+from gapless.measurements.base import Observation
+from gapless.recording import Array
+from gapless.solution import Decision
+
+SLOWEST: Final = 2.5
+"""Below this speed no comb is heard [m/s]: such speeds are the null hypothesis."""
+TAUGHT: Final = 3.5
+"""Spectra of slower driving are not learned from [m/s]."""
+SURE: Final = 0.5
+"""Nor are those where the filter's speed is less certain than this [m/s]."""
+GRID: Final = 0.05
+"""Distance of the speeds that are looked at [m/s]."""
+NEAR: Final = 0.6
+"""Half width of a peak [m/s]."""
+RATE: Final = 25.0
+"""A slower IMU hears no wheels [Hz]."""
+ROOM: Final = 0.4
+"""Samples and velocities are kept for so much longer than a window [s]."""
+
+
+class Peak(NamedTuple):
+    """What a spectrum says about the speed.
+
+    Parameters
+    ----------
+    off : float
+        Speed less that of the filter [m/s].
+    variance : float
+        [m^2/s^2]
+    """
+
+    off: float
+    variance: float
+
+
+class Heard(NamedTuple):
+    """A reading, for the report.
+
+    Parameters
+    ----------
+    time : float
+        [s]
+    speed, sd : float
+        [m/s]
+    """
+
+    time: float
+    speed: float
+    sd: float
+
+
+@dataclass
+class Wheels:
+    """See the module.
+
+    Parameters
+    ----------
+    temper : float
+        Factor on log likelihoods: neighbouring orders are correlated, and templates are not exact.
+    least : int
+        Spectra that must have been learned from.
+    period : float
+        Time between spectra [s].
+    inflate : float
+        Factor on variances: windows overlap.
+    floor : float
+        Standard deviation that no reading is better than [m/s].
+    doubt : float
+        Factor on the filter's deviation of the speed, which it is over-sure of.
+    evidence : float
+        Log likelihood ratio against no comb that is asked for.
+    mass : float
+        Share of the probability that the peak must hold.
+    widest : float
+        Speeds farther from the filter's than this are not looked at [m/s].
+    patience : float
+        Without a fix for so long, GNSS is silent [s].
+    """
+
+    temper: float = 0.12
+    least: int = 30
+    period: float = 1.0
+    inflate: float = 4.0
+    floor: float = 0.15
+    doubt: float = 2.0
+    evidence: float = 1.0
+    mass: float = 0.8
+    widest: float = 6.0
+    patience: float = 2.5
+    samples: Array = field(default_factory=lambda: np.zeros((256, 7)))
+    filled: int = 0
+    memory: Memory | None = None
+    comb: Comb | None = None
+    fixed: float = -math.inf
+    due: float = -math.inf
+    readings: tuple[Heard, ...] = ()
+    refused: int = 0
+    reach: ClassVar[float] = WINDOW + ROOM
+
+    def feel(self, block: ImuBlock) -> None:
+        """See `Bridge`."""
+        n = len(block.time)
+        if self.filled + n > len(self.samples):
+            self._make_room(n, float(block.time[-1]))
+        rows = self.samples[self.filled : self.filled + n]
+        rows[:, 0] = block.time - 0.5 * block.dt
+        rows[:, 1:4] = block.dtheta / block.dt[:, None]
+        rows[:, 4:] = block.dvel / block.dt[:, None]
+        self.filled += n
+
+    def _make_room(self, n: int, time: float) -> None:
+        """Forget samples older than a window needs, and make sure that n more fit."""
+        old = self.samples[: self.filled]
+        kept = old[np.searchsorted(old[:, 0], time - WINDOW - ROOM - 1.0) :]
+        self.samples = np.zeros((max(256, 2 * (len(kept) + n)), 7))
+        self.samples[: len(kept)], self.filled = kept, len(kept)
+
+    def hear(self, belief: Belief, reading: Reading, used: bool) -> None:
+        """See `Bridge`: a fix that is used breaks the silence."""
+        if used and reading.channel in ("position", "velocity"):
+            self.fixed = reading.time
+
+    def tick(self, belief: Belief, motion: Motion) -> tuple[Saying, ...]:
+        """See `Bridge`."""
+        if motion.time < self.due:
+            return ()
+        self.due = motion.time + self.period - 0.5 * motion.dt
+        heard = self._listen(belief, motion.time)
+        if heard is None:
+            return ()
+        if motion.time - self.fixed > self.patience:
+            return self._speak(belief, heard, motion.time)
+        self._learn(belief, heard)
+        return ()
+
+    def lost(self) -> None:
+        """See `Bridge`."""
+        self.filled = 0
+
+    def decisions(self, start: float) -> tuple[Decision, ...]:
+        """See `Bridge`."""
+        if self.memory is None:
+            return ()
+        said = f"{len(self.readings)} speeds read in silence, {self.refused} spectra that said too little"
+        return (Decision("wheels heard", round(self.memory.windows), "spectra", "data", said),)
+
+    def learned(self) -> object | None:
+        """See `Bridge`."""
+        return None
+
+    def copy(self) -> Self:
+        """See `Bridge`: sums are shared, for they are never changed."""
+        return replace(self, samples=self.samples.copy())
+
+    # --- hearing --------------------------------------------------------------------------------
+
+    def _listen(self, belief: Belief, time: float) -> Spectrum | None:
+        """The spectrum of the window that ends now, warped by the inertial course of the speed."""
+        if not self.filled:
+            return None
+        times, gained = belief.trail.behind(WINDOW)
+        if len(times) < 10 or times[0] > time - WINDOW or times[-1] < time - 1e-3:
+            return None
+        speeds = np.linalg.norm(belief.estimate()[3:6] + gained, axis=1)
+        if speeds.min() < 0.5:
+            return None
+        rows = self.samples[: self.filled]
+        rows = rows[np.searchsorted(rows[:, 0], time - WINDOW - ROOM) :]
+        gaps = np.diff(rows[:, 0])
+        if len(rows) < WINDOW * RATE or gaps.max() > 0.2 or rows[0, 0] > time - WINDOW:
+            return None
+        rate = 1.0 / float(np.median(gaps))
+        if rate < RATE - 0.5:
+            return None
+        return spectrum(rows, times, speeds, time, 0.5 * rate - 3.0)
+
+    def _learn(self, belief: Belief, heard: Spectrum) -> None:
+        if heard.speed < TAUGHT or speed_sd(belief) > SURE:
+            return
+        memory = self.memory or Memory.empty(heard.top)
+        self.memory, self.comb = memory.after(heard), None
+
+    def _speak(self, belief: Belief, heard: Spectrum, time: float) -> tuple[Saying, ...]:
+        if self.memory is None or self.memory.windows < self.least:
+            return ()
+        if self.comb is None:
+            self.comb = self.memory.comb()
+        sd = math.hypot(self.doubt * speed_sd(belief), 0.3)
+        peak = self._peak(self.comb, heard, sd)
+        if peak is None:
+            self.refused += 1
+            return ()
+        r = self.inflate * (peak.variance + self.floor**2)
+        v = belief.estimate()[3:6]
+        speed = float(np.linalg.norm(v))
+        h = np.zeros((1, belief.layout.n))
+        h[0, 3:6] = v / speed
+        self.readings = (*self.readings, Heard(time, speed + peak.off, math.sqrt(r)))
+        return (Saying("bridge_speed", Observation(np.array([peak.off]), h, np.array([[r]]))),)
+
+    def _peak(self, comb: Comb, heard: Spectrum, sd: float) -> Peak | None:
+        """The speed that fits, where one does; speeds without a comb have a likelihood ratio of one."""
+        reach = min(max(3.5 * sd, 0.8), self.widest)
+        speeds = np.arange(max(0.0, heard.speed - reach), heard.speed + reach, GRID)
+        log, audible = np.zeros(len(speeds)), speeds >= SLOWEST
+        if audible.sum() < 8:
+            return None
+        log[audible] = self.temper * comb.evidence(heard, speeds[audible])
+        posterior = log - 0.5 * ((speeds - heard.speed) / sd) ** 2
+        k = int(posterior.argmax())
+        if k in (0, len(speeds) - 1) or log[k] < self.evidence or speeds[k] < SLOWEST + 0.1:
+            return None
+        share = np.exp(posterior - posterior[k])
+        near = np.abs(speeds - speeds[k]) < NEAR
+        if share[near].sum() < self.mass * share.sum():
+            return None
+        weight = np.exp(log[near] - log[near].max())
+        weight /= weight.sum()
+        mean = float(weight @ speeds[near])
+        return Peak(mean - heard.speed, float(weight @ (speeds[near] - mean) ** 2))
+
+
+def speed_sd(belief: Belief) -> float:
+    """Standard deviation of the length of the velocity.
+
+    Parameters
+    ----------
+    belief : Belief
+
+    Returns
+    -------
+    float
+        [m/s]
+    """
+    v = belief.estimate()[3:6]
+    unit = v / max(float(np.linalg.norm(v)), 0.1)
+    return math.sqrt(max(float(unit @ belief.P[3:6, 3:6] @ unit), 0.0))
