@@ -3,8 +3,9 @@
 Nothing here imports `gapless.inertial`: it is what the mechanisation is tested against.
 """
 
-from gapless.simulate.chassis import CAR, Chassis, Engine, Gear, Growth, Harmonic, Road, Slip, WheelComb
+from gapless.simulate.chassis import CAR, Chassis, Engine, Gear, Road, Slip, WheelComb
 from gapless.simulate.drive import drive, simulate
+from gapless.simulate.harmonics import MOTOR, TYRE, Growth, Harmonic
 from gapless.simulate.motion import Vehicle, increments, point, rates, trajectory
 from gapless.simulate.path import Path, Segment
 from gapless.simulate.profiles import PROFILES, profile
@@ -13,7 +14,9 @@ from gapless.simulate.vibration import speed_bound, vibrate
 
 __all__ = [
     "CAR",
+    "MOTOR",
     "PROFILES",
+    "TYRE",
     "Chassis",
     "Engine",
     "Gear",

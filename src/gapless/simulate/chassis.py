@@ -1,152 +1,32 @@
-"""What shakes a car: tyres and engine, each a comb of orders, and the road.
-
-An *order* is a frequency counted in cycles per turn of what turns: a tyre that is not quite round or
-balanced shakes the chassis at whole orders of its own, an engine at multiples of half a turn. Amplitudes
-are those of the box's surroundings in the car's axes, not of what a sensor makes of them.
-"""
+"""What shakes a car: the tyres, the engine, the road."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import dataclass
 from itertools import pairwise
 from math import inf, isfinite
 from typing import Final, NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
-from gapless.errors import ConfigError
+from gapless.simulate.harmonics import (
+    BY_SPEED,
+    BY_TURNS,
+    MOTOR,
+    TYRE,
+    Growth,
+    Harmonic,
+    Triple,
+    demand,
+    finite,
+)
 from gapless.units import DEG
-
-Array = NDArray[np.float64]
-Triple = tuple[float, float, float]
-
-
-def _demand(holds: bool, what: str, cure: str) -> None:
-    if not holds:
-        raise ConfigError(f"{what}; {cure}")
 
 
 def _demand_circumference(circumference: float) -> None:
-    _demand(
+    demand(
         isfinite(circumference) and circumference > 0.0,
         f"a wheel of {circumference:g} m circumference",
         "give metres a turn, more than 0",
     )
-
-
-def _finite(values: Iterable[float], least: float = 0.0) -> bool:
-    return all(isfinite(v) and v >= least for v in values)
-
-
-@dataclass(frozen=True)
-class Harmonic:
-    """One line of an order comb.
-
-    Parameters
-    ----------
-    order : float
-        Cycles per turn, > 0.
-    rate : tuple of 3 floats
-        Amplitude of the angular rate about the car's forward, right, down axes [rad/s], where the
-        comb's `Growth` is 1.
-    accel : tuple of 3 floats
-        Of the acceleration along them [m/s^2].
-
-    Raises
-    ------
-    ConfigError
-        If the order is not positive or an amplitude is negative.
-    """
-
-    order: float
-    rate: Triple
-    accel: Triple
-
-    def __post_init__(self) -> None:
-        _demand(
-            isfinite(self.order) and self.order > 0.0,
-            f"a harmonic of order {self.order:g}",
-            "give cycles per turn, more than 0",
-        )
-        _demand(
-            _finite((*self.rate, *self.accel)),
-            f"harmonic {self.order:g}: an amplitude is negative or not finite",
-            "give zero or more",
-        )
-
-
-@dataclass(frozen=True)
-class Growth:
-    """How an amplitude grows with what drives it: a power law that saturates.
-
-    Parameters
-    ----------
-    reference : float
-        Where it is 1: a speed [m/s] or turns per second [1/s], > 0.
-    exponent : float
-        > 0, so that what stands is still.
-    cap : float
-        It grows no more from `cap` times the reference on.
-
-    Raises
-    ------
-    ConfigError
-        If one of them is not positive.
-    """
-
-    reference: float
-    exponent: float = 1.0
-    cap: float = 2.0
-
-    def __post_init__(self) -> None:
-        given = (self.reference, self.exponent, self.cap)
-        _demand(
-            all(v > 0.0 for v in given) and isfinite(self.reference) and isfinite(self.exponent),
-            f"growth by reference {given[0]:g}, exponent {given[1]:g}, cap {given[2]:g}",
-            "each must be more than 0",
-        )
-
-    def __call__(self, driver: Array) -> Array:
-        """Factor on the amplitude.
-
-        Parameters
-        ----------
-        driver : ndarray
-            In the unit of the reference; its sign does not count.
-
-        Returns
-        -------
-        ndarray, of that shape
-        """
-        share = np.minimum(np.abs(driver) / self.reference, self.cap)
-        return np.asarray(share**self.exponent)
-
-
-def _harmonic(order: float, rate: Triple, accel: Triple) -> Harmonic:
-    """A harmonic with its rates in deg/s."""
-    return Harmonic(order, (rate[0] * DEG, rate[1] * DEG, rate[2] * DEG), accel)
-
-
-TYRE: Final = (
-    _harmonic(1.0, (0.12, 0.14, 0.08), (0.030, 0.030, 0.060)),
-    _harmonic(2.0, (0.20, 0.18, 0.08), (0.040, 0.040, 0.080)),
-    _harmonic(3.0, (0.14, 0.12, 0.06), (0.030, 0.040, 0.060)),
-    _harmonic(4.0, (0.10, 0.10, 0.05), (0.040, 0.030, 0.060)),
-    _harmonic(5.0, (0.08, 0.07, 0.05), (0.030, 0.030, 0.050)),
-    _harmonic(6.0, (0.06, 0.06, 0.05), (0.030, 0.020, 0.040)),
-    _harmonic(7.0, (0.05, 0.05, 0.05), (0.020, 0.020, 0.030)),
-)
-"""Orders of a car's tyres at 15 m/s."""
-
-MOTOR: Final = (
-    _harmonic(0.5, (0.02, 0.02, 0.01), (0.010, 0.010, 0.010)),
-    _harmonic(1.0, (0.04, 0.04, 0.02), (0.020, 0.020, 0.020)),
-    _harmonic(2.0, (0.10, 0.06, 0.04), (0.040, 0.040, 0.060)),
-    _harmonic(4.0, (0.04, 0.03, 0.02), (0.020, 0.020, 0.030)),
-)
-"""Orders of a four-cylinder engine at 30 turns a second: two ignitions a turn."""
 
 
 @dataclass(frozen=True)
@@ -171,7 +51,7 @@ class WheelComb:
 
     circumference: float = 2.0
     harmonics: tuple[Harmonic, ...] = TYRE
-    growth: Growth = Growth(15.0)
+    growth: Growth = BY_SPEED
     driven: bool = True
 
     def __post_init__(self) -> None:
@@ -216,22 +96,22 @@ class Engine:
     gears: tuple[Gear, ...] = GEARS
     circumference: float = 2.0
     idle: float = 13.0
-    growth: Growth = Growth(30.0)
+    growth: Growth = BY_TURNS
 
     def __post_init__(self) -> None:
         _demand_circumference(self.circumference)
-        _demand(
+        demand(
             isfinite(self.idle) and self.idle > 0.0,
             f"an engine that idles at {self.idle:g} turns a second",
             "give more than 0",
         )
         bands = [0.0, *(g.until for g in self.gears)]
-        _demand(
+        demand(
             all(a < b for a, b in pairwise(bands)) and bands[-1] == inf,
             f"gears until {', '.join(f'{b:g}' for b in bands[1:]) or 'nothing'} m/s",
             "give rising speeds, the last of them inf",
         )
-        _demand(
+        demand(
             all(isfinite(g.ratio) and g.ratio > 0.0 for g in self.gears),
             "a gear ratio is not positive",
             "give engine turns per wheel turn",
@@ -263,12 +143,12 @@ class Road:
 
     rate: Triple = (0.04 * DEG, 0.04 * DEG, 0.02 * DEG)
     accel: Triple = (0.02, 0.02, 0.04)
-    growth: Growth = Growth(15.0)
+    growth: Growth = BY_SPEED
     lowest: float = 3.0
 
     def __post_init__(self) -> None:
-        _demand(
-            _finite((*self.rate, *self.accel, self.lowest)),
+        demand(
+            finite((*self.rate, *self.accel, self.lowest)),
             "road noise: a density or the lowest frequency is negative or not finite",
             "give zero or more",
         )
@@ -313,17 +193,15 @@ class Chassis:
     signal: float = 1.0
 
     def __post_init__(self) -> None:
-        _demand(
-            _finite([self.signal]), f"wheels cannot be {self.signal:g} times as loud", "give zero or more"
-        )
+        demand(finite([self.signal]), f"wheels cannot be {self.signal:g} times as loud", "give zero or more")
         for s in self.slips:
-            _demand(
-                _finite(s) and s.duration > 0.0,
+            demand(
+                finite(s) and s.duration > 0.0,
                 f"a slip of {s.duration:g} s from {s.start:g} s, ratio {s.ratio:g}",
                 "give a start and a ratio of zero or more, and a positive duration",
             )
         for a, b in pairwise(sorted(self.slips)):
-            _demand(a.start + a.duration <= b.start, f"slips overlap at {b.start:g} s", "part or join them")
+            demand(a.start + a.duration <= b.start, f"slips overlap at {b.start:g} s", "part or join them")
 
 
 CAR: Final = Chassis()

@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 from gapless.errors import ConfigError
 from gapless.recording import Imu
 from gapless.sensors.noise import band_limited
-from gapless.simulate.chassis import Chassis, Engine, Harmonic, Road, Slip, WheelComb
+from gapless.simulate.chassis import Chassis, Engine, Road, Slip, WheelComb
+from gapless.simulate.harmonics import Harmonic
 from gapless.simulate.motion import AT_AXLE, Vehicle
 from gapless.simulate.path import Path
 
@@ -146,11 +147,10 @@ def speed_bound(
     float
         [m/s]; inf if there is nothing to hear. A tone of angular frequency w, amplitude A and unknown
         phase in N samples dt apart with noise of variance s^2 has var(w) >= 24 s^2 / (A^2 dt^2 N (N^2 - 1)):
-        Rife & Boorstyn (1974), eq. 20, for a real tone, which has half the energy of the complex one
-        there. Here s^2 = density^2 / dt, A is what the integration over dt leaves, and w =
+        Rife & Boorstyn (1974), IEEE Trans. IT 20(5); for a real tone Kay (1993), eq. 3.41. Here s^2 = density^2 / dt, A is what the integration over dt leaves, and w =
         2 pi k v / C, aliased or not, gives (2 pi k / C)^2 / var(w) of information on v; the information
-        of all lines and channels adds up as long as they lie more than some 1 / window apart, and from
-        0 and rate / 2.
+        of all lines and channels adds up as long as they lie several 1 / window apart, and from 0 and
+        rate / 2.
 
     Raises
     ------
@@ -160,27 +160,26 @@ def speed_bound(
     count = int(np.floor(window * rate + 1e-9))
     if count < 2:
         raise ConfigError(f"{window:g} s at {rate:g} Hz hold no speed; give a window of two samples or more")
-    density = np.hypot(_road_density(chassis.road, speed), np.repeat(noise, 3))
-    information = sum(
-        (_information(comb, speed, rate, density) for comb in chassis.wheels), np.zeros(6)
-    ).sum() * (chassis.signal**2 * count * (count**2 - 1.0) / (24.0 * rate**3))
+    per_line = sum(_information(comb, chassis.road, speed, rate, noise) for comb in chassis.wheels)
+    information = chassis.signal**2 * count * (count**2 - 1.0) / (24.0 * rate**3) * per_line
     if not np.isfinite(information):
         raise ConfigError("a speed from lines without noise has no bound; give a road or a sensor noise")
     return float(1.0 / np.sqrt(information)) if information else float("inf")
 
 
-def _road_density(road: Road | None, speed: float) -> Array:
-    if road is None:
-        return np.zeros(6)
-    return np.asarray(road.growth(np.asarray(speed)) * np.array([*road.rate, *road.accel]))
-
-
-def _information(comb: WheelComb, speed: float, rate: float, density: Array) -> Array:
-    """Of a comb: sum over its lines of (2 pi k / C)^2 A^2 / density^2, for each channel."""
-    total = np.zeros(6)
+def _information(
+    comb: WheelComb, road: Road | None, speed: float, rate: float, noise: tuple[float, float]
+) -> float:
+    """Of a comb: sum over its lines and channels of (2 pi k / C)^2 A^2 / density^2."""
+    total, at = 0.0, np.asarray(speed)
     for h in comb.harmonics:
-        left = comb.growth(np.asarray(speed)) * np.sinc(h.order * speed / comb.circumference / rate)
-        amplitude = left * np.array([*h.rate, *h.accel])
-        slope = 2.0 * np.pi * h.order / comb.circumference * amplitude
-        total += np.where(slope == 0.0, 0.0, (slope / np.maximum(density, 1e-300)) ** 2)
-    return total
+        frequency = h.order * speed / comb.circumference
+        heard = abs(frequency - rate * np.round(frequency / rate))  # where it folds to
+        density = np.repeat(noise, 3).astype(float)
+        if road and heard >= road.lowest:
+            density = np.hypot(density, road.growth(at) * np.array([*road.rate, *road.accel]))
+        left = comb.growth(at) * np.sinc(frequency / rate) * np.array([*h.rate, *h.accel])
+        slope = 2.0 * np.pi * h.order / comb.circumference * left
+        with np.errstate(divide="ignore"):
+            total += np.sum((slope[slope != 0.0] / density[slope != 0.0]) ** 2)
+    return float(total)
