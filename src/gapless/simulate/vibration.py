@@ -146,11 +146,11 @@ def speed_bound(
     -------
     float
         [m/s]; inf if there is nothing to hear. A tone of angular frequency w, amplitude A and unknown
-        phase in N samples dt apart with noise of variance s^2 has var(w) >= 24 s^2 / (A^2 dt^2 N (N^2 - 1)):
-        Rife & Boorstyn (1974), IEEE Trans. IT 20(5); for a real tone Kay (1993), eq. 3.41. Here s^2 = density^2 / dt, A is what the integration over dt leaves, and w =
-        2 pi k v / C, aliased or not, gives (2 pi k / C)^2 / var(w) of information on v; the information
-        of all lines and channels adds up as long as they lie several 1 / window apart, and from 0 and
-        rate / 2.
+        phase in N samples dt apart with noise of variance s^2 has var(w) >= 24 s^2 / (A^2 dt^2 N (N^2 - 1))
+        (Rife & Boorstyn 1974, IEEE Trans. IT 20(5); for a real tone Kay 1993, eq. 3.41). Here s^2 =
+        density^2 / dt, A is what the integration over dt leaves, and w = 2 pi k v / C, aliased or not,
+        gives (2 pi k / C)^2 / var(w) of information on v; that of all lines and channels adds up as long
+        as lines lie several 1 / window apart, and from 0 and rate / 2.
 
     Raises
     ------
