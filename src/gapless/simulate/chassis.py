@@ -65,8 +65,9 @@ class Gear(NamedTuple):
     ratio: float
 
 
-GEARS: Final = (Gear(4.5, 14.0), Gear(8.0, 8.0), Gear(13.0, 5.4), Gear(19.0, 4.0), Gear(inf, 3.1))
-"""Five gears that keep a car's engine between 1200 and 3100 turns a minute up to 120 km/h."""
+GEARS: Final = (Gear(4.5, 13.7), Gear(8.0, 7.7), Gear(13.0, 5.3), Gear(19.0, 3.85), Gear(inf, 3.12))
+"""Five gears of a car, which take its engine to some 2100 turns a minute before each change. No ratio is
+whole: or an order of the engine would be one of the wheels."""
 
 
 @dataclass(frozen=True)
