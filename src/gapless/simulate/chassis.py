@@ -66,8 +66,8 @@ class Gear(NamedTuple):
 
 
 GEARS: Final = (Gear(4.5, 13.7), Gear(8.0, 7.7), Gear(13.0, 5.3), Gear(19.0, 3.85), Gear(inf, 3.12))
-"""Five gears of a car, which take its engine to some 2100 turns a minute before each change. No ratio is
-whole: or an order of the engine would be one of the wheels."""
+"""Five gears of a car, which take its engine to 1850 to 2200 turns a minute before each change. No ratio
+is whole: or an order of the engine would be one of the wheels."""
 
 
 @dataclass(frozen=True)

@@ -28,7 +28,6 @@ straight line by 3e-4 rad, and is exact at both ends."""
 class _Fine(NamedTuple):
     """A record's intervals cut into stretches; way and turns are counted at their edges."""
 
-    edges: Array  # (m + 1,) [s]
     dt: Array  # (m,) [s]
     way: Array  # (m + 1,) along the path [m]
     rolled: Array  # (m + 1,) of the driven wheels' tread [m]
@@ -87,7 +86,7 @@ def _cut(imu: Imu, path: Path, slips: Sequence[Slip]) -> _Fine:
     rolled = way.copy()
     for start, duration, ratio in slips:
         rolled += (ratio - 1.0) * (distance(np.clip(edges, start, start + duration)) - distance(start))
-    return _Fine(edges, np.diff(edges), way, rolled)
+    return _Fine(np.diff(edges), way, rolled)
 
 
 def _add_tones(
