@@ -44,6 +44,13 @@ from gapless.cli.options import out_option, outage_options
 )
 @click.option("--late", type=float, default=0.0, metavar="SECONDS", help="By how much GNSS stamps are late.")
 @click.option("--odometer", is_flag=True, help="Log wheel speed as well.")
+@click.option(
+    "--wheels",
+    type=float,
+    metavar="FACTOR",
+    help="Shake the car by tyres, engine and road, not by the grade's noise; the tyres FACTOR times as "
+    "loud as those of a passenger car.",
+)
 @outage_options
 @out_option
 def simulate(
@@ -54,6 +61,7 @@ def simulate(
     mounting: tuple[float, float, float],
     late: float,
     odometer: bool,
+    wheels: float | None,
     outage: tuple[str, ...],
     outages: tuple[str, ...],
     out: Path,
@@ -71,7 +79,7 @@ def simulate(
     from gapless.cli.describe import describe
     from gapless.io import write_recording
     from gapless.scenarios import plan, withhold
-    from gapless.simulate import Receiver, Vehicle, WheelSensor
+    from gapless.simulate import CAR, Receiver, Vehicle, WheelSensor
     from gapless.simulate import simulate as drive
     from gapless.units import DEG
 
@@ -83,6 +91,7 @@ def simulate(
         vehicle=Vehicle(mounting=(mounting[0] * DEG, mounting[1] * DEG, mounting[2] * DEG)),
         receiver=Receiver(position_delay=late, velocity_delay=late),
         wheels=WheelSensor() if odometer else None,
+        chassis=None if wheels is None else replace(CAR, signal=wheels),
     )
     silent = plan([*outage, *outages], made)
     made = replace(made, gnss=withhold(made.gnss, silent, made.start))

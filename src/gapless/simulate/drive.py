@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.random import Generator
@@ -12,11 +13,13 @@ from gapless.recording import Recording
 from gapless.sensors.grades import Grade
 from gapless.sensors.grades import grade as named_grade
 from gapless.sensors.imu_errors import corrupt
+from gapless.simulate.chassis import Chassis
 from gapless.simulate.motion import AT_AXLE, Vehicle, increments, trajectory
 from gapless.simulate.path import Path, Segment
 from gapless.simulate.profiles import fit
 from gapless.simulate.profiles import profile as named_profile
 from gapless.simulate.receivers import STANDARD, Receiver, WheelSensor, fixes, odometer
+from gapless.simulate.vibration import vibrate
 from gapless.units import DEG
 
 ORIGIN = (32.05 * DEG, 118.79 * DEG, 20.0)
@@ -81,6 +84,7 @@ def simulate(
     vehicle: Vehicle = AT_AXLE,
     receiver: Receiver = STANDARD,
     wheels: WheelSensor | None = None,
+    chassis: Chassis | None = None,
     origin: tuple[float, float, float] = ORIGIN,
     heading: float = HEADING,
     reference_rate: float = 10.0,
@@ -96,7 +100,7 @@ def simulate(
     duration : float
         At most this long [s]; a profile of fixed length may end before.
     seed : int
-        The path, the IMU, the receiver and the odometer draw from streams of their own.
+        The path, the IMU, the receiver, the odometer and the chassis draw from streams of their own.
     rate : float, optional
         IMU samples per second [Hz]; that of the grade if not given.
     vehicle : Vehicle
@@ -104,6 +108,9 @@ def simulate(
     receiver : Receiver
     wheels : WheelSensor, optional
         No odometer if not given.
+    chassis : Chassis, optional
+        What shakes the box, `CAR` for a passenger car: tyres, engine and road, in the place of the
+        shapeless vibration of the grade. That alone if not given.
     origin : tuple of 3 floats
         Latitude, longitude [rad], height [m] of the rear axle at time 0.
     heading : float
@@ -123,8 +130,11 @@ def simulate(
     """
     budget = named_grade(grade) if isinstance(grade, str) else grade
     path = drive(profile, duration, seed, origin=origin, heading=heading)
-    _, of_imu, of_receiver, of_wheels = _streams(seed)
+    _, of_imu, of_receiver, of_wheels, of_chassis = _streams(seed)
     true = increments(path, rate or budget.rate, vehicle)
+    if chassis is not None:
+        true = vibrate(true, path, chassis, of_chassis, vehicle)
+        budget = replace(budget, gyro_vibration=0.0, accel_vibration=0.0)
     speed, _ = path.along(true.time)
     imu, _ = corrupt(true, budget, of_imu, speed)
     rows = np.arange(int(np.floor(path.duration * reference_rate + 1e-9)) + 1) / reference_rate
@@ -142,5 +152,5 @@ def simulate(
 
 
 def _streams(seed: int) -> list[Generator]:
-    """Independent streams for path, IMU, receiver and odometer."""
-    return [np.random.default_rng(s) for s in np.random.SeedSequence(seed).spawn(4)]
+    """Independent streams for path, IMU, receiver, odometer and chassis."""
+    return [np.random.default_rng(s) for s in np.random.SeedSequence(seed).spawn(5)]

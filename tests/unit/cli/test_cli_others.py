@@ -2,6 +2,7 @@
 
 import io
 import re
+from dataclasses import replace
 
 import numpy as np
 import pandas as pd
@@ -9,6 +10,7 @@ import pytest
 
 import gapless as gp
 from gapless.cli.progress import progress
+from gapless.simulate import CAR
 
 
 def test_inspect_tells_what_fuse_then_decides(shell, drive, tmp_path):
@@ -44,6 +46,18 @@ def test_simulate_is_the_python_call(shell, tmp_path):
     assert np.allclose(found.imu.dtheta, made.imu.dtheta, rtol=1e-15, atol=0.0)
     assert found.odometer is not None
     assert found.grade == "tactical"
+
+
+def test_simulated_wheels(shell, tmp_path):
+    words = ("--profile", "carpark", "--duration", 30, "--seed", 7, "--wheels", 2)
+    shell("simulate", *words, "--out", tmp_path / "a")
+    found = gp.read(tmp_path / "a")
+    made = gp.simulate_drive("carpark", duration=30.0, seed=7, chassis=replace(CAR, signal=2.0))
+    # increments are stored as rates beside their interval: one rounding
+    assert np.allclose(found.imu.dvel, made.imu.dvel, rtol=1e-15, atol=0.0)
+    said = shell("simulate", "--wheels", -1, "--out", tmp_path / "b", code=2)
+    assert "-1 times as loud" in said.stderr
+    assert said.stderr.count("\n") == 1
 
 
 def test_simulated_silence(shell, tmp_path):

@@ -5,21 +5,32 @@ import pytest
 from numpy.testing import assert_allclose
 
 from gapless.errors import ConfigError
-from gapless.sensors import grade
-from gapless.simulate import Receiver, Segment, Vehicle, WheelSensor, drive, increments, simulate
+from gapless.sensors import corrupt, grade
+from gapless.simulate import (
+    CAR,
+    Chassis,
+    Receiver,
+    Segment,
+    Vehicle,
+    WheelSensor,
+    drive,
+    increments,
+    simulate,
+    vibrate,
+)
 
-CAR = Vehicle(imu=(1.0, 0.0, -0.5), antenna=(0.5, 0.2, -1.6), mounting=(0.0, 0.02, 0.1))
+BOX = Vehicle(imu=(1.0, 0.0, -0.5), antenna=(0.5, 0.2, -1.6), mounting=(0.0, 0.02, 0.1))
 
 
 def test_a_recording_is_whole():
-    r = simulate("urban", "consumer", 120.0, 7, vehicle=CAR, wheels=WheelSensor())
+    r = simulate("urban", "consumer", 120.0, 7, vehicle=BOX, wheels=WheelSensor())
     assert len(r.imu) == 12000
     assert len(r.gnss) == 121
     assert len(r.odometer) == 1201
     assert r.imu.rate == pytest.approx(100.0)
     assert r.grade == "consumer"
     assert r.reference_clock == "imu"
-    assert np.array_equal(r.lever_arm, CAR.lever_arm)
+    assert np.array_equal(r.lever_arm, BOX.lever_arm)
     ref = r.reference
     assert len(ref) == 1201
     assert set(ref.source) == {"reference"}
@@ -28,8 +39,8 @@ def test_a_recording_is_whole():
 
 
 def test_the_perfect_grade_measures_the_truth():
-    r = simulate("carpark", "perfect", 60.0, 2, rate=200.0, vehicle=CAR)
-    exact = increments(drive("carpark", 60.0, 2), 200.0, CAR)
+    r = simulate("carpark", "perfect", 60.0, 2, rate=200.0, vehicle=BOX)
+    exact = increments(drive("carpark", 60.0, 2), 200.0, BOX)
     assert np.array_equal(r.imu.dtheta, exact.dtheta)
     assert np.array_equal(r.imu.dvel, exact.dvel)
 
@@ -48,6 +59,43 @@ def test_sensors_draw_from_streams_of_their_own():
     assert np.array_equal(base.reference.lla, other.reference.lla)
     late = simulate("urban", "consumer", 60.0, 1, receiver=Receiver(position_delay=0.2))
     assert np.array_equal(base.imu.dvel, late.imu.dvel)
+
+
+def test_without_a_chassis_the_grade_alone_shakes():
+    """Four streams of a seed as they were before there was a fifth."""
+    streams = [np.random.default_rng(s) for s in np.random.SeedSequence(4).spawn(4)]
+    path = drive("carpark", 60.0, 4)
+    true = increments(path, 100.0)
+    expected, _ = corrupt(true, grade("consumer"), streams[1], path.along(true.time)[0])
+    made = simulate("carpark", "consumer", 60.0, 4)
+    assert np.array_equal(made.imu.dtheta, expected.dtheta)
+    assert np.array_equal(made.imu.dvel, expected.dvel)
+
+
+def test_a_chassis_shakes_in_the_place_of_the_grade_and_changes_nothing_else():
+    odometer = WheelSensor()
+    still, loud, again, other = (
+        simulate("carpark", "consumer", 60.0, seed, vehicle=BOX, wheels=odometer, chassis=chassis)
+        for seed, chassis in ((4, Chassis((), None, None)), (4, CAR), (4, CAR), (5, CAR))
+    )
+    calm = replace(grade("consumer"), gyro_vibration=0.0, accel_vibration=0.0)
+    without = simulate("carpark", calm, 60.0, 4, vehicle=BOX, wheels=odometer)
+    assert np.array_equal(still.imu.dvel, without.imu.dvel)
+    assert np.array_equal(loud.imu.dvel, again.imu.dvel)
+    assert not np.array_equal(loud.imu.dvel, still.imu.dvel)
+    assert not np.array_equal(loud.imu.dvel, other.imu.dvel)
+    assert np.array_equal(loud.gnss.lla, still.gnss.lla)
+    assert np.array_equal(loud.odometer.speed, still.odometer.speed)
+    assert np.array_equal(loud.reference.lla, still.reference.lla)
+
+
+def test_a_perfect_sensor_measures_the_shaken_car():
+    path = drive("carpark", 60.0, 2)
+    of_chassis = np.random.default_rng(np.random.SeedSequence(2).spawn(5)[4])
+    exact = vibrate(increments(path, 50.0, BOX), path, CAR, of_chassis, BOX)
+    made = simulate("carpark", "perfect", 60.0, 2, rate=50.0, vehicle=BOX, chassis=CAR)
+    assert np.array_equal(made.imu.dtheta, exact.dtheta)
+    assert np.array_equal(made.imu.dvel, exact.dvel)
 
 
 def test_segments_and_grades_of_ones_own():
