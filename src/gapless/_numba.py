@@ -27,7 +27,8 @@ FAST = {"reassoc", "contract", "arcp", "nsz"}
 
 
 _FILES = ("_numba", "units", "earth", "attitude", "recording", "events")
-_ROOMS = (*(f"{name}.py" for name in _FILES), "filters", "inertial", "sensors", "measurements", "denoise", "bridges")
+_WITH = ("filters", "inertial", "sensors", "measurements", "denoise", "bridges")
+_ROOMS = (*(f"{name}.py" for name in _FILES), *_WITH)
 """Modules that hold kernels, and all that those may import (the floors keep it so)."""
 _KEPT = 30.0 * 86400.0
 """Kernels of versions that last compiled longer ago are thrown away [s]."""

@@ -3,8 +3,8 @@
 A turning wheel excites a comb of harmonics at orders k / circumference. In an ordinary spectrum it is
 smeared, since the speed changes within a window; in a time warped to constant speed it is a comb again
 (order tracking; Fyfe & Munck 1997). `gather` sums what spectra have in common over orders, whatever
-their speed: the template of this car (`comb`); `evidence` is how much better a spectrum fits it at a speed than
-not at all.
+their speed: the template of this car (`comb`); `evidence` is how much better a spectrum fits it at a
+speed than not at all.
 """
 
 from __future__ import annotations

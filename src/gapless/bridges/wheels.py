@@ -8,7 +8,9 @@ comb at all. What it says is a speed: (z, H, R) on the length of the velocity.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field, replace
+from collections.abc import Mapping
+from copy import copy
+from dataclasses import dataclass, field
 from typing import ClassVar, Final, NamedTuple, Self
 
 import numpy as np
@@ -18,7 +20,7 @@ from gapless.bridges.comb import Comb, Memory
 from gapless.bridges.orders import WINDOW, Spectrum, spectrum
 from gapless.events import ImuBlock, Motion, Reading
 from gapless.inertial.belief import Belief
-from gapless.measurements.base import Observation
+from gapless.measurements.base import Observation, Sensor
 from gapless.recording import Array
 from gapless.solution import Decision
 
@@ -75,6 +77,8 @@ class Wheels:
 
     Parameters
     ----------
+    sensors : mapping of str to Sensor
+        Of the same system.
     temper : float
         Factor on log likelihoods: neighbouring orders are correlated, and templates are not exact.
     least : int
@@ -89,32 +93,40 @@ class Wheels:
         Factor on the filter's deviation of the speed, which it is over-sure of.
     evidence : float
         Log likelihood ratio against no comb that is asked for.
+    deaf : float
+        Prior probability that a window has no comb to be heard, whatever the speed.
     mass : float
         Share of the probability that the peak must hold.
     widest : float
         Speeds farther from the filter's than this are not looked at [m/s].
+    drift : float
+        What a filter's speed may go wrong in a second without a reading, whatever it states [m/s].
     patience : float
         Without a fix for so long, GNSS is silent [s].
     """
 
-    temper: float = 0.12
+    sensors: Mapping[str, Sensor]
+    temper: float = 0.15
     least: int = 30
     period: float = 1.0
     inflate: float = 4.0
-    floor: float = 0.15
+    floor: float = 0.1
     doubt: float = 2.0
-    evidence: float = 1.0
+    evidence: float = 0.7
+    deaf: float = 0.2
     mass: float = 0.8
     widest: float = 6.0
+    drift: float = 0.1
     patience: float = 2.5
-    samples: Array = field(default_factory=lambda: np.zeros((256, 7)))
-    filled: int = 0
-    memory: Memory | None = None
-    comb: Comb | None = None
-    fixed: float = -math.inf
-    due: float = -math.inf
-    readings: tuple[Heard, ...] = ()
-    refused: int = 0
+    samples: Array = field(default_factory=lambda: np.zeros((256, 7)), init=False)
+    filled: int = field(default=0, init=False)
+    memory: Memory | None = field(default=None, init=False)
+    comb: Comb | None = field(default=None, init=False)
+    fixed: float = field(default=-math.inf, init=False)
+    due: float = field(default=-math.inf, init=False)
+    read: float = field(default=-math.inf, init=False)
+    readings: tuple[Heard, ...] = field(default=(), init=False)
+    refused: int = field(default=0, init=False)
     reach: ClassVar[float] = WINDOW + ROOM
 
     def feel(self, block: ImuBlock) -> None:
@@ -137,7 +149,7 @@ class Wheels:
 
     def hear(self, belief: Belief, reading: Reading, used: bool) -> None:
         """See `Bridge`: a fix that is used breaks the silence."""
-        if used and reading.channel in ("position", "velocity"):
+        if used and reading.channel in self.sensors and reading.channel != "odometer":
             self.fixed = reading.time
 
     def tick(self, belief: Belief, motion: Motion) -> tuple[Saying, ...]:
@@ -170,7 +182,9 @@ class Wheels:
 
     def copy(self) -> Self:
         """See `Bridge`: sums are shared, for they are never changed."""
-        return replace(self, samples=self.samples.copy())
+        new = copy(self)
+        new.samples = self.samples.copy()
+        return new
 
     # --- hearing --------------------------------------------------------------------------------
 
@@ -205,7 +219,8 @@ class Wheels:
             return ()
         if self.comb is None:
             self.comb = self.memory.comb()
-        sd = math.hypot(self.doubt * speed_sd(belief), 0.3)
+        silence = time - max(self.fixed, self.read)
+        sd = math.hypot(self.doubt * speed_sd(belief), 0.3, self.drift * silence)
         peak = self._peak(self.comb, heard, sd)
         if peak is None:
             self.refused += 1
@@ -215,6 +230,7 @@ class Wheels:
         speed = float(np.linalg.norm(v))
         h = np.zeros((1, belief.layout.n))
         h[0, 3:6] = v / speed
+        self.read = time
         self.readings = (*self.readings, Heard(time, speed + peak.off, math.sqrt(r)))
         return (Saying("bridge_speed", Observation(np.array([peak.off]), h, np.array([[r]]))),)
 
@@ -225,7 +241,8 @@ class Wheels:
         log, audible = np.zeros(len(speeds)), speeds >= SLOWEST
         if audible.sum() < 8:
             return None
-        log[audible] = self.temper * comb.evidence(heard, speeds[audible])
+        ratio = np.exp(self.temper * comb.evidence(heard, speeds[audible]))
+        log[audible] = np.log((1.0 - self.deaf) * ratio + self.deaf)
         posterior = log - 0.5 * ((speeds - heard.speed) / sd) ** 2
         k = int(posterior.argmax())
         if k in (0, len(speeds) - 1) or log[k] < self.evidence or speeds[k] < SLOWEST + 0.1:

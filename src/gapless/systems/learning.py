@@ -77,11 +77,11 @@ def check(use: BridgeUse) -> None:
     ConfigError
         If they do not, with the reason.
     """
+    if use.model == "none":
+        return
     from gapless.bridges import BRIDGES
     from gapless.bridges.epochs import FEATURES
 
-    if use.model == "none":
-        return
     if use.model in BRIDGES:
         _check_own(use, list(signature(BRIDGES[use.model]).parameters)[1:])
         return
