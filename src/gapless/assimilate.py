@@ -105,5 +105,5 @@ def _process(state: State, settings: Settings, verdict: Verdict) -> None:
     """What a rule does to the way to the next epoch."""
     state.fade *= verdict.fade
     if verdict.noise is not None:
-        state.noise = settings.noise.copy()
+        state.noise = state.manner.noise.copy()
         state.noise[:DENSITIES] *= verdict.noise

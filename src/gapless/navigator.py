@@ -18,6 +18,7 @@ from gapless.inertial.belief import Belief, inject
 from gapless.inertial.cubature import propagate_points
 from gapless.inertial.pieces import GAP, pieces, without_holes
 from gapless.journal import Journal
+from gapless.manner import Manner
 from gapless.measurements.base import Observation
 from gapless.settings import Settings
 from gapless.state import Past, State
@@ -56,7 +57,8 @@ class Navigator:
         wander = Wander(settings.wander_time)
         rules = {kind: rule.copy() for kind, rule in settings.adaptation.items()}
         aligner = settings.aligner.copy()
-        self._state = State(belief, rules, constraints, bridges, aligner, wander, settings.noise)
+        manner = settings.manner
+        self._state = State(belief, rules, constraints, bridges, aligner, wander, manner.noise, manner)
         self._past = Past(settings.lateness)
         self._propagate = propagate_points if settings.cubature else at.propagate
         self.dropped = 0
@@ -81,6 +83,23 @@ class Navigator:
     def aligned(self) -> bool:
         """Whether there is an attitude yet."""
         return self._state.aligned
+
+    @property
+    def aided(self) -> bool:
+        """Whether GNSS speaks."""
+        return self.aligned and self._source() == "gnss"
+
+    def adopt(self, manner: Manner) -> None:
+        """Go on in another manner; what was estimated and learned stays.
+
+        Parameters
+        ----------
+        manner : Manner
+        """
+        state = self._state
+        state.manner, state.noise = manner, manner.noise
+        for name, like in manner.constraints.items():
+            state.constraints[name] = state.constraints[name].tuned(like)
 
     def step(self, event: Event) -> None:
         """Take in one event.
@@ -152,8 +171,10 @@ class Navigator:
         if found is None:
             self.dropped += len(late)
             return
-        state, events = found
+        (state, events), manner = found, self._state.manner
         self._state = state.copy()
+        if state.manner is not manner:
+            self.adopt(manner)
         readings = (*(r for e in events if not isinstance(e, ImuBlock) for r in e), *late)
         self._state.expect(readings)
         for event in events:
@@ -267,9 +288,9 @@ class Navigator:
                 continue
             if self._update(name, motion.time, observation):
                 state.heard[name] = motion.time
-        for bridge in state.bridges:
+        for k, bridge in enumerate(state.bridges):
             for channel, said in bridge.tick(state.belief, motion):
-                if self._update(channel, motion.time, said):
+                if k in state.manner.voices and self._update(channel, motion.time, said):
                     state.heard["bridge"] = motion.time
         self._row()
 
@@ -278,7 +299,10 @@ class Navigator:
         state, often = self._state, self.settings.row
         if state.clock >= state.next_row - EPS:
             state.next_row = max(state.next_row + often, state.clock + 0.5 * often)
-            row = state.clock, state.belief, state.wander.response, self._source()
+            source, shared = self._source(), state.wander.response
+            if source != "gnss" and state.manner.scale != 1.0:
+                shared = shared + (state.manner.scale - 1.0) * state.belief.P[:3, :3]
+            row = state.clock, state.belief, shared, source
             self.journal.row(*row)
             if self.tape is not None:
                 self.tape.row(*row)

@@ -15,6 +15,7 @@ from gapless.filters.adaptation.base import Adaptation
 from gapless.filters.adaptation.gate import Gate
 from gapless.filters.adaptation.registry import KINDS
 from gapless.inertial.layout import Layout
+from gapless.manner import Manner
 from gapless.measurements.base import Constraint, Sensor
 from gapless.recording import Array
 
@@ -81,6 +82,11 @@ class Settings:
     open_loop: bool = False
     cubature: bool = False
     trail: float = 0.0
+
+    @cached_property
+    def manner(self) -> Manner:
+        """As the settings have it: every bridge is listened to."""
+        return Manner(self.noise, self.constraints, tuple(range(len(self.bridges))))
 
     @cached_property
     def ceiling(self) -> Array:

@@ -12,6 +12,7 @@ from gapless.events import Event, ImuBlock, Reading
 from gapless.filters.adaptation.base import Adaptation
 from gapless.filters.consider import Wander
 from gapless.inertial.belief import Belief
+from gapless.manner import Manner
 from gapless.measurements.base import Constraint
 from gapless.recording import Array
 
@@ -33,6 +34,8 @@ class State:
         What the fixes' common error does to the position.
     noise : ndarray, shape (7,)
         Process noise, as an adaptation left it; never changed in place.
+    manner : Manner
+        As rehearsals advise.
     pending : list of Reading
         Readings that hold for a time still to come, in its order.
     heard : dict of str to float
@@ -54,6 +57,7 @@ class State:
     aligner: Aligner | None
     wander: Wander
     noise: Array
+    manner: Manner
     pending: list[Reading] = field(default_factory=list)
     heard: dict[str, float] = field(default_factory=dict)
     clock: float = -math.inf
@@ -76,6 +80,7 @@ class State:
             None if self.aligner is None else self.aligner.copy(),
             self.wander.copy(),
             self.noise,
+            self.manner,
             list(self.pending),
             dict(self.heard),
             self.clock,

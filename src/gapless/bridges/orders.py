@@ -178,9 +178,7 @@ def spectrum(samples: Array, times: Array, speeds: Array, end: float, top: float
 
 
 @kernel
-def gather(
-    log: Array, top: float, speed: float, total: Array, count: Array, square: Array
-) -> None:
+def gather(log: Array, top: float, speed: float, total: Array, count: Array, square: Array) -> None:
     """Add a spectrum to sums over orders.
 
     Parameters
@@ -205,9 +203,7 @@ def gather(
 
 
 @kernel
-def evidence(
-    log: Array, top: float, comb: Array, variance: Array, speeds: Array
-) -> Array:
+def evidence(log: Array, top: float, comb: Array, variance: Array, speeds: Array) -> Array:
     """Log likelihood of speeds against that of no comb at all.
 
     Sum over channels and orders of (y T - T^2 / 2) / s^2: y ~ N(T, s^2) against N(0, s^2).

@@ -53,9 +53,12 @@ class Constraint(Protocol):
     ----------
     needs_heading : bool
         Whether it misleads a filter that may be wrong about its heading by a quarter turn.
+    parameters : tuple of str
+        Attributes that may be tuned on the way.
     """
 
     needs_heading: ClassVar[bool]
+    parameters: ClassVar[tuple[str, ...]]
 
     def tick(self, belief: Belief, motion: Motion) -> Observation | None:
         """Observation at the end of a tick, or None where the constraint does not hold.
@@ -79,6 +82,23 @@ class Constraint(Protocol):
         reading : Reading
         """
         ...
+
+    def tuned(self, like: Self) -> Self:
+        """An independent constraint with the same memory and the parameters of another.
+
+        Parameters
+        ----------
+        like : Constraint
+            Of the same kind.
+
+        Returns
+        -------
+        Constraint
+        """
+        new = self.copy()
+        for name in self.parameters:
+            setattr(new, name, getattr(like, name))
+        return new
 
     def copy(self) -> Self:
         """An independent constraint with the same memory.

@@ -10,12 +10,12 @@ import numpy as np
 
 from gapless.events import Motion, Reading
 from gapless.inertial.belief import Belief
-from gapless.measurements.base import Observation
+from gapless.measurements.base import Constraint, Observation
 from gapless.measurements.vehicle import slip
 
 
 @dataclass
-class NonHolonomic:
+class NonHolonomic(Constraint):
     """No slip sideways or upwards at the rear axle.
 
     Parameters
@@ -43,6 +43,7 @@ class NonHolonomic:
     interval: float = 0.1
     last: float = -math.inf
     needs_heading: ClassVar[bool] = True
+    parameters: ClassVar[tuple[str, ...]] = ("lateral", "vertical", "turn")
 
     def tick(self, belief: Belief, motion: Motion) -> Observation | None:
         """Observation of lateral and vertical slip; see `Constraint.tick`."""

@@ -22,7 +22,7 @@ from gapless.events import Motion, Reading
 from gapless.inertial.belief import Belief
 from gapless.inertial.layout import ROW
 from gapless.inertial.trail import GRAVITY
-from gapless.measurements.base import Observation
+from gapless.measurements.base import Constraint, Observation
 from gapless.measurements.zero_velocity import zero_velocity
 from gapless.recording import Array
 from gapless.units import DEG
@@ -170,7 +170,7 @@ def stands(
 
 
 @dataclass
-class Stillness:
+class Stillness(Constraint):
     """Zero velocity and zero angular rate, when the vehicle stands.
 
     Parameters
@@ -209,6 +209,7 @@ class Stillness:
     lasted: float = 0.0
     last: float = -math.inf
     needs_heading: ClassVar[bool] = False
+    parameters: ClassVar[tuple[str, ...]] = ("sd", "sd_rate", "odds", "hold")
 
     def hear(self, reading: Reading) -> None:
         """File the present spread under the class that the GNSS speed names."""

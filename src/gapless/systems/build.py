@@ -8,6 +8,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from gapless.alignment.coarse import Aligner
+from gapless.errors import ConfigError
 from gapless.filters.adaptation.registry import KINDS, RULES, chain
 from gapless.inertial.layout import Layout
 from gapless.measurements.base import Constraint, Sensor
@@ -16,10 +17,11 @@ from gapless.measurements.nonholonomic import NonHolonomic
 from gapless.measurements.odometer import Odometer
 from gapless.measurements.spread import Spread
 from gapless.measurements.stillness import Stillness
-from gapless.navigator import Settings
 from gapless.recording import Array, Recording
 from gapless.sensors import grade
+from gapless.settings import Settings
 from gapless.systems.learning import bridges
+from gapless.systems.library import load
 from gapless.systems.recipe import Imu, System
 from gapless.units import DEG
 
@@ -59,7 +61,9 @@ def settings(
     names = states(system, recording)
     angles, angle_sd = mounting
     sensors, lateness = _sensors(system, recording, angles), _lateness(stamps(system, offsets))
-    rules, spoken = system.adaptation, bridges(system.bridge, system.learner, sensors, lateness)
+    rules = system.adaptation
+    parts = [(part.bridge, part.learner) for part in (system, *candidates(system))]
+    spoken = tuple(b for use, who in parts for b in bridges(use, who, sensors, lateness))
     averaged = 1.5 * system.gnss.velocity_averaging + 0.2 if system.gnss.velocity_averaging else 0.0
     tables = {name: getattr(rules, name) for name in RULES}
     return Settings(
@@ -93,6 +97,29 @@ def settings(
         cubature=system.filter.moments == "cubature",
         open_loop=system.filter.correction == "feedforward",
     )
+
+
+def candidates(system: System) -> list[System]:
+    """Other systems whose bridges may speak in this one, once they have earned it.
+
+    Parameters
+    ----------
+    system : System
+
+    Returns
+    -------
+    list of System
+
+    Raises
+    ------
+    ConfigError
+        If there is no such system, or it has no bridge.
+    """
+    found = [load(name) for name in system.rehearsal.others]
+    for other in found:
+        if other.bridge.model == "none":
+            raise ConfigError(f"rehearsal.others: {other.name} has no bridge; name a system that has one")
+    return found
 
 
 def stamps(system: System, offsets: Mapping[str, float]) -> dict[str, float]:

@@ -17,7 +17,7 @@ from gapless.sensors.vibration import gyro_density
 from gapless.solution import Decision
 from gapless.systems.build import budget, lever_arm, settings, stamps
 from gapless.systems.learning import BridgeUse
-from gapless.systems.recipe import Adaptation, System
+from gapless.systems.recipe import Adaptation, RehearsalUse, System
 from gapless.units import DEG
 
 CHANNELS = ("position", "velocity", "odometer")
@@ -131,7 +131,7 @@ class _FirstPass:
         gnss = replace(use, jitter=jitter, position_floor=max(floor, use.position_floor))
         sensors = tuple(s for s in self.system.sensors if s != "odometer")  # it would vouch for itself
         coarse = replace(self.system.filter, tick=0.2, moments="taylor")
-        plain = replace(self.system, adaptation=Adaptation(), bridge=BridgeUse())
+        plain = replace(self.system, adaptation=Adaptation(), bridge=BridgeUse(), rehearsal=RehearsalUse())
         system = replace(plain, gnss=gnss, filter=coarse, sensors=sensors)
         navigator = Navigator(
             settings(system, self.past, self.offsets, _given_mounting(system), self.density, coarse.tick)

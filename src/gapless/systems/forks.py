@@ -13,14 +13,14 @@ from dataclasses import dataclass, fields
 import numpy as np
 
 from gapless.feed import events
-from gapless.navigator import Navigator
 from gapless.recording import Recording, Trajectory
 from gapless.scenarios import Outage
 from gapless.solution import Solution
 from gapless.systems.adjust import graded
 from gapless.systems.build import stamps
+from gapless.systems.conduct import Folding, navigator_for
 from gapless.systems.decide import Decided
-from gapless.systems.fuse import collect, fold, settings_for, withhold_from
+from gapless.systems.fuse import collect, fold, withhold_from
 from gapless.systems.recipe import System
 
 LEAD = 2.0
@@ -37,13 +37,13 @@ class Fork:
     begin : float
         All that arrived before it was fed [s, logged]; later than it is the first fix that the outage
         touches.
-    navigator : Navigator
+    navigator : Navigator or Rehearsing
         Never stepped itself.
     """
 
     outage: Outage
     begin: float
-    navigator: Navigator
+    navigator: Folding
 
 
 def run_with_forks(
@@ -77,7 +77,7 @@ def run_with_forks(
     """
     system, through = graded(system, recording), tuple(through)
     fed, late = withhold_from(recording, through), stamps(system, decided.offsets)
-    navigator = Navigator(settings_for(recording, system, decided, rate))
+    navigator = navigator_for(recording, system, decided, rate)
     last = float(recording.imu.time[-1])
     at = sorted(((first_touched(recording, o), o) for o in outages), key=lambda pair: pair[0])
     forks, previous = [], -np.inf

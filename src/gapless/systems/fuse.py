@@ -11,20 +11,19 @@ from gapless.errors import AlignmentError
 from gapless.events import Event, ImuBlock
 from gapless.feed import events
 from gapless.journal import Journal
-from gapless.navigator import Navigator, Settings
 from gapless.recording import Recording
+from gapless.rehearsal.stage import Rehearsing
 from gapless.scenarios import Outage, withhold
 from gapless.solution import Decision, Solution
 from gapless.systems.adjust import graded
-from gapless.systems.build import settings, stamps
+from gapless.systems.build import stamps
+from gapless.systems.conduct import Finish, Folding, as_built, navigator_for
 from gapless.systems.decide import Decided, decide, static_decisions
 from gapless.systems.prepare import denoise_decisions, prepared
 from gapless.systems.recipe import System
 
 Progress = Callable[[float], None]
 """Told the time that navigation has reached [s after the first sample]."""
-Finish = Callable[[Settings], Settings]
-"""Changes what a navigator is built from."""
 DECISIONS_TAKEN_LATE = "decisions taken late"
 """Names the decision that tells that an outage had begun before anything could be decided."""
 
@@ -37,7 +36,7 @@ def fuse(
     causal: bool = False,
     progress: Progress | None = None,
     decided: Decided | None = None,
-    finish: Finish | None = None,
+    finish: Finish = as_built,
 ) -> Solution:
     """Navigate a recording.
 
@@ -56,7 +55,7 @@ def fuse(
     progress : callable, optional
     decided : Decided, optional
         What `decide_before` found, where it is known already.
-    finish : callable, optional
+    finish : callable
         Has the last word on the navigator's settings.
 
     Returns
@@ -73,10 +72,10 @@ def fuse(
     recording, outages = prepared(recording, system), tuple(outages)
     open_sky = withhold_from(recording, outages)
     if causal:
-        navigator, decided = _on_the_way(open_sky, system, rate, progress, finish or _as_built)
+        navigator, decided = _on_the_way(open_sky, system, rate, progress, finish)
     else:
         decided = decided or decide_before(open_sky, system, outages)
-        navigator = Navigator((finish or _as_built)(settings_for(open_sky, system, decided, rate)))
+        navigator = navigator_for(open_sky, system, decided, rate, finish=finish)
         fold(navigator, events(open_sky, stamps(system, decided.offsets)), recording.start, progress)
     return collect(recording, system, outages, navigator, decided)
 
@@ -116,29 +115,6 @@ def decide_before(open_sky: Recording, system: System, outages: tuple[Outage, ..
     return decided
 
 
-def settings_for(
-    recording: Recording, system: System, decided: Decided, rate: float, lateness: float = 0.0
-) -> Settings:
-    """Settings of the navigator of a run.
-
-    Parameters
-    ----------
-    recording : Recording
-    system : System
-    decided : Decided
-    rate : float
-        Rows per second.
-    lateness : float
-        For how long past states are kept at least [s].
-
-    Returns
-    -------
-    Settings
-    """
-    built = settings(system, recording, decided.offsets, decided.mounting, decided.gyro_density, 1.0 / rate)
-    return replace(built, lateness=max(built.lateness, lateness))
-
-
 def withhold_from(recording: Recording, outages: Iterable[Outage]) -> Recording:
     """The recording without the GNSS epochs of the outages.
 
@@ -154,12 +130,12 @@ def withhold_from(recording: Recording, outages: Iterable[Outage]) -> Recording:
     return replace(recording, gnss=withhold(recording.gnss, tuple(outages), recording.start))
 
 
-def fold(navigator: Navigator, feed: Iterable[Event], start: float, progress: Progress | None = None) -> None:
+def fold(navigator: Folding, feed: Iterable[Event], start: float, progress: Progress | None = None) -> None:
     """Step through events.
 
     Parameters
     ----------
-    navigator : Navigator
+    navigator : Navigator or Rehearsing
     feed : iterable of Event
     start : float
         Time of the first IMU sample [s].
@@ -173,21 +149,17 @@ def fold(navigator: Navigator, feed: Iterable[Event], start: float, progress: Pr
             progress(told)
 
 
-def _as_built(settings: Settings) -> Settings:
-    return settings
-
-
 STAGES = (60.0, 120.0, 240.0, 480.0)
 """When a causal run decides anew [s after the first sample]."""
 
 
 def _on_the_way(
     recording: Recording, system: System, rate: float, progress: Progress | None, finish: Finish
-) -> tuple[Navigator, Decided]:
+) -> tuple[Folding, Decided]:
     """Decide at fixed data times from the past alone; the navigator goes on with what was decided."""
     cuts = [recording.start + s for s in STAGES if s < recording.duration]
     decided = decide(recording, system, recording.start)
-    navigator = Navigator(finish(settings_for(recording, system, decided, rate, lateness=1.6)))
+    navigator = navigator_for(recording, system, decided, rate, 1.6, finish)
     for begin, end in zip([-np.inf, *cuts], [*cuts, np.inf], strict=True):
         feed = events(recording, stamps(system, decided.offsets), begin, end)
         fold(navigator, feed, recording.start, progress)
@@ -200,7 +172,7 @@ def collect(
     recording: Recording,
     system: System,
     outages: tuple[Outage, ...],
-    navigator: Navigator,
+    navigator: Folding,
     decided: Decided,
 ) -> Solution:
     """What a navigator that has come to the end found.
@@ -210,7 +182,7 @@ def collect(
     recording : Recording
     system : System
     outages : tuple of Outage
-    navigator : Navigator
+    navigator : Navigator or Rehearsing
     decided : Decided
 
     Returns
@@ -244,6 +216,7 @@ def collect(
             *_alignments(journal, recording.start),
             *_stops(journal),
             *(d for bridge in navigator.bridges for d in bridge.decisions(recording.start)),
+            *(navigator.decisions(recording.start) if isinstance(navigator, Rehearsing) else ()),
         ),
         outages=tuple((o.start, o.until) for o in outages),
         start=recording.start,

@@ -151,6 +151,21 @@ class DenoiseUse(Struct, forbid_unknown_fields=True, frozen=True):
     parameters: dict[str, Any] = {}
 
 
+class RehearsalUse(Struct, forbid_unknown_fields=True, frozen=True):
+    """Outages rehearsed in the good past, every so many seconds; 0 rehearses nothing and lets all speak.
+
+    `others` names systems whose bridges may speak too, alone or with this one's, once they have earned
+    it. `presets` names other tunings: keys of this recipe and their values. `budget` is how many samples
+    may be replayed for each that comes in.
+    """
+
+    every: NonNegative = 0.0
+    length: Annotated[float, Meta(ge=10.0)] = 60.0
+    budget: Positive = 12.0
+    others: tuple[str, ...] = ()
+    presets: dict[str, dict[str, Any]] = {}
+
+
 class System(Struct, forbid_unknown_fields=True, frozen=True):
     """A whole system; every table and every key is optional."""
 
@@ -171,3 +186,4 @@ class System(Struct, forbid_unknown_fields=True, frozen=True):
     denoise: DenoiseUse = DenoiseUse()
     bridge: BridgeUse = BridgeUse()
     learner: LearnerUse = LearnerUse()
+    rehearsal: RehearsalUse = RehearsalUse()

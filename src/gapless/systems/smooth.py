@@ -20,8 +20,9 @@ from gapless.scenarios import Outage
 from gapless.solution import Decision, Solution, first_deviations
 from gapless.systems.adjust import graded
 from gapless.systems.build import stamps
+from gapless.systems.conduct import settings_for
 from gapless.systems.decide import decide
-from gapless.systems.fuse import Progress, collect, settings_for, withhold_from
+from gapless.systems.fuse import Progress, collect, withhold_from
 from gapless.systems.prepare import prepared
 from gapless.systems.recipe import System
 from gapless.tape import Row, Tape

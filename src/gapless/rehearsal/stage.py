@@ -1,0 +1,282 @@
+"""The stage: a navigator that rehearses outages in its own past, and adopts what came best out of them.
+
+Every `every` seconds a copy of the navigator is kept. When `length` seconds have passed and GNSS spoke
+all along, copies of the copy go through them without it, each in another manner, and are held
+against the track that the navigator found with it. All happens at fixed times of the data, counted in
+samples: the same log gives the same bits in a batch, live and after an interruption.
+"""
+
+from __future__ import annotations
+
+import math
+from bisect import bisect_left
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any, Final, Self
+
+import numpy as np
+
+from gapless import earth
+from gapless.events import Event, ImuBlock
+from gapless.journal import Journal
+from gapless.manner import Manner
+from gapless.navigator import Navigator
+from gapless.recording import Array
+from gapless.rehearsal.judge import AGES, Choice, Rehearsed, Trial, choose
+from gapless.settings import Settings
+from gapless.solution import Decision
+
+SETTLE: Final = 30.0
+"""After its alignment a navigator is left alone for so long [s]."""
+REFERENCE: Final = 2.0
+"""Standard deviation of the aided track, by axis: errors that fixes share [m]."""
+
+
+@dataclass(frozen=True)
+class Plan:
+    """What is rehearsed, and how much.
+
+    Parameters
+    ----------
+    bridges : mapping of str to tuple of int
+        Candidates: which of the navigator's bridges may speak.
+    presets : mapping of str to Manner
+        Other tunings of the filter.
+    every, length : float
+        A rehearsal begins so often, and lasts so long [s].
+    budget : float
+        Samples that may be replayed for each sample that comes in.
+    """
+
+    bridges: Mapping[str, tuple[int, ...]]
+    presets: Mapping[str, Manner] = field(default_factory=dict)
+    every: float = 20.0
+    length: float = 60.0
+    budget: float = 12.0
+
+
+@dataclass
+class _Open:
+    """A rehearsal whose time has not passed yet."""
+
+    start: float
+    navigator: Navigator
+    events: list[Event]
+
+    @property
+    def samples(self) -> int:
+        return sum(len(e.time) for e in self.events if isinstance(e, ImuBlock))
+
+
+class Rehearsing:
+    """A navigator that rehearses; it is stepped, kept and forked like one.
+
+    Parameters
+    ----------
+    navigator : Navigator
+    plan : Plan
+    """
+
+    def __init__(self, navigator: Navigator, plan: Plan) -> None:
+        self.navigator, self.plan = navigator, plan
+        self.open: list[_Open] = []
+        self.history: tuple[Rehearsed, ...] = ()
+        self.choice = choose((), plan.bridges, plan.presets)
+        self.chosen: tuple[tuple[float, Choice], ...] = ()
+        self.due = math.inf
+        self.credit = 0.0
+        self._adopt()
+
+    @property
+    def settings(self) -> Settings:
+        """Those of the navigator."""
+        return self.navigator.settings
+
+    @property
+    def journal(self) -> Journal:
+        """Rows and innovations so far."""
+        return self.navigator.journal
+
+    @property
+    def time(self) -> float:
+        """End of the last IMU sample taken in [s]."""
+        return self.navigator.time
+
+    @property
+    def bridges(self) -> list[Any]:
+        """The navigator's bridges as they are now."""
+        return list(self.navigator.bridges)
+
+    def step(self, event: Event) -> None:
+        """Take in one event; see `Navigator.step`.
+
+        Parameters
+        ----------
+        event : ImuBlock or tuple of Reading
+        """
+        if not isinstance(event, ImuBlock):
+            self.navigator.step(event)
+            self._keep(tuple(r for r in event if r.channel == "odometer"))
+            return
+        if self.due == math.inf and self.journal.alignments:
+            self.due = self.journal.alignments[0][0] + SETTLE
+        first, n = 0, len(event.time)
+        while first < n:
+            end = first + int(np.searchsorted(event.time[first:], self._next(), side="right"))
+            if end > first:
+                part = event.rows(first, end)
+                self.navigator.step(part)
+                self._keep(part)
+                self.credit += self.plan.budget * (end - first)
+                first = end
+            else:
+                self._act()
+
+    def snapshot(self) -> Any:
+        """All that must be kept to go on from here.
+
+        Returns
+        -------
+        object
+        """
+        opened = [replace(o, events=list(o.events)) for o in self.open]
+        return (
+            self.navigator.snapshot(),
+            opened,
+            self.history,
+            self.choice,
+            self.chosen,
+            self.due,
+            self.credit,
+        )
+
+    def restore(self, snapshot: Any) -> None:
+        """Go back to a snapshot.
+
+        Parameters
+        ----------
+        snapshot : object
+        """
+        kept, opened, self.history, self.choice, self.chosen, self.due, self.credit = snapshot
+        self.navigator.restore(kept)
+        self.open = [replace(o, events=list(o.events)) for o in opened]
+
+    def fork(self) -> Self:
+        """A cheap copy that can run ahead, with a journal of its own.
+
+        Returns
+        -------
+        Rehearsing
+        """
+        new = object.__new__(type(self))
+        new.__dict__.update(self.__dict__)
+        new.navigator = self.navigator.fork()
+        new.open = [replace(o, events=list(o.events)) for o in self.open]
+        return new
+
+    def decisions(self, start: float) -> tuple[Decision, ...]:
+        """What was rehearsed, what came of it, and what is chosen now.
+
+        Parameters
+        ----------
+        start : float
+            Time of the first IMU sample [s].
+
+        Returns
+        -------
+        tuple of Decision
+        """
+        c, n = self.choice, len(self.history)
+        asked = f"{n} outages of {self.plan.length:g} s rehearsed in the good past"
+        since = f"; since {self.chosen[-1][0] - start:.1f} s" if self.chosen else ""
+        who = Decision("bridge chosen", c.bridge or "nobody", "", "data", asked + since)
+        how = Decision("tuning chosen", c.preset or "the recipe's own", "", "data", asked)
+        sure = Decision("stated covariance in silence", round(c.scale, 2), "times", "data", asked)
+        rows = [("bridge", s) for s in c.bridges] + [("tuning", s) for s in c.presets]
+        told = (
+            Decision(f"rehearsed {kind} {s.name}", *_verdict(s.earned), "data", s.text) for kind, s in rows
+        )
+        return (who, *([how] if c.presets else []), sure, *told)
+
+    # --- acting ---------------------------------------------------------------------------------
+
+    def _next(self) -> float:
+        return min(self.due, *(o.start + self.plan.length for o in self.open), math.inf)
+
+    def _keep(self, event: Event) -> None:
+        if event:
+            for one in self.open:
+                one.events.append(event)
+
+    def _act(self) -> None:
+        """Do what is due before the next sample."""
+        now = self._next()
+        if self.open and self.open[0].start + self.plan.length <= now:
+            self._rehearse(self.open.pop(0))
+            return
+        self.due = now + self.plan.every
+        if self.navigator.aided:
+            self.open.append(_Open(now, self.navigator.fork(), []))
+
+    def _rehearse(self, one: _Open) -> None:
+        """Replay an outage in every manner that the budget allows; adopt what comes of it."""
+        times, track = _track(self.journal, one.start)
+        if times is None:
+            return
+        cost, trials = one.samples, []
+        for bridge, preset in self._order():
+            if trials and self.credit < cost:
+                break
+            self.credit -= cost
+            trials.append(self._try(one, bridge, preset, times, track))
+        self.history = (*self.history, Rehearsed(one.start, one.start + self.plan.length, tuple(trials)))
+        choice = choose(self.history, self.plan.bridges, self.plan.presets)
+        if choice[:2] != self.choice[:2]:
+            self.chosen = (*self.chosen, (one.start + self.plan.length, choice))
+        self.choice = choice
+        self._adopt()
+
+    def _order(self) -> list[tuple[str, str]]:
+        """Nobody first, then the bridges, then tunings of the chosen one, the least tried first."""
+        tried = dict.fromkeys(self.plan.presets, 0)
+        for trial in (t for one in self.history for t in one.trials if t.preset):
+            tried[trial.preset] += 1
+        presets = sorted(tried, key=tried.__getitem__)
+        return [("", ""), *((b, "") for b in self.plan.bridges), *((self.choice.bridge, p) for p in presets)]
+
+    def _try(self, one: _Open, bridge: str, preset: str, times: Array, track: Array) -> Trial:
+        navigator = one.navigator.fork()
+        navigator.adopt(self._manner(bridge, preset, 1.0))
+        for event in one.events:
+            navigator.step(event)
+        rows = navigator.journal.trajectory()
+        rows = rows.take(rows.time <= times[-1])
+        here = np.column_stack([np.interp(rows.time, times, track[:, k]) for k in range(2)])
+        off = rows.lla[:, :2] - here
+        r_m, r_n = earth.radii(np.sin(here[:, 0]))
+        off *= np.column_stack([r_m, r_n * np.cos(here[:, 0])])
+        nn, ee = (rows.sd[:, k] ** 2 + REFERENCE**2 for k in range(2))
+        square = ee * off[:, 0] ** 2 - 2.0 * rows.horizontal * off[:, 0] * off[:, 1] + nn * off[:, 1] ** 2
+        nees = square / (nn * ee - rows.horizontal**2)
+        at = np.searchsorted(rows.time, np.arange(one.start + AGES, times[-1], AGES))
+        worst = float(np.hypot(off[:, 0], off[:, 1]).max())
+        return Trial(bridge, preset, worst, tuple(nees[at[at < len(nees)]].tolist()))
+
+    def _adopt(self) -> None:
+        self.navigator.adopt(self._manner(self.choice.bridge, self.choice.preset, self.choice.scale))
+
+    def _manner(self, bridge: str, preset: str, scale: float) -> Manner:
+        tuned = self.plan.presets[preset] if preset else self.settings.manner
+        return replace(tuned, voices=self.plan.bridges.get(bridge, ()), scale=scale)
+
+
+def _track(journal: Journal, start: float) -> tuple[Array, Array] | tuple[None, None]:
+    """Times, latitude and longitude of the aided track since a time; nothing where GNSS fell silent."""
+    first = bisect_left(journal.times, start)
+    if first >= len(journal.times) - 10 or any(source != "gnss" for source in journal.sources[first:]):
+        return None, None
+    return np.array(journal.times[first:]), np.array([x[:2] for x in journal.states[first:]])
+
+
+def _verdict(earned: bool) -> tuple[str, str]:
+    return ("better" if earned else "not better"), ""
