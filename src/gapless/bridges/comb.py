@@ -56,7 +56,10 @@ class Comb(NamedTuple):
         -------
         ndarray, shape (k,)
         """
-        return evidence(heard.log - self.mean, heard.top, self.height, self.variance, speeds)
+        left = np.ascontiguousarray((heard.log - self.mean).T)
+        weight = np.ascontiguousarray((self.height / self.variance[:, None]).T)
+        cost = 0.5 * (weight * self.height.T).sum(axis=1)
+        return evidence(left, heard.top, weight, cost, speeds)
 
 
 @dataclass

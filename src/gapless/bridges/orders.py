@@ -30,8 +30,8 @@ LEAST_POINTS: Final = 512
 """Of a window: enough for `TOP`."""
 LOWEST, STEP, ORDERS = 0.2, 0.01, 311
 """First order of a template, distance of orders, and how many there are [cycles/m]."""
-BASE: Final = 61
-"""Bins of the running median, every other one: 7.6 Hz in all."""
+BASE: Final = 31
+"""Bins of the running median, every `PAD`-th one: those between are no news. 7.75 Hz in all."""
 TINY: Final = 1e-12
 
 
@@ -104,18 +104,18 @@ def whiten(power: Array) -> Array:
     ndarray, shape (6, BINS)
     """
     half = BASE // 2
-    n = min(power.shape[1] // 2, BINS // 2 + half + 1)
+    n = min(power.shape[1] // PAD, BINS // PAD + half + 1)
     out, log, window = np.empty((CHANNELS, BINS)), np.empty(n), np.empty(BASE)
     for c in range(CHANNELS):
         for i in range(n):
-            log[i] = np.log(power[c, 2 * i] + TINY)
+            log[i] = np.log(power[c, PAD * i] + TINY)
         for i in range(BASE):
             window[i] = log[max(0, i - half)]
         window.sort()
-        for i in range((BINS + 1) // 2):
+        for i in range(BINS // PAD + 1):
             if i > 0:
                 _exchange(window, log[max(0, i - 1 - half)], log[min(n - 1, i + half)])
-            for k in (2 * i, 2 * i + 1):
+            for k in range(PAD * i, PAD * i + PAD):
                 if k < BINS:
                     out[c, k] = np.log(power[c, k] + TINY) - window[half]
     return out
@@ -203,21 +203,21 @@ def gather(log: Array, top: float, speed: float, total: Array, count: Array, squ
 
 
 @kernel
-def evidence(log: Array, top: float, comb: Array, variance: Array, speeds: Array) -> Array:
+def evidence(log: Array, top: float, weight: Array, cost: Array, speeds: Array) -> Array:
     """Log likelihood of speeds against that of no comb at all.
 
     Sum over channels and orders of (y T - T^2 / 2) / s^2: y ~ N(T, s^2) against N(0, s^2).
 
     Parameters
     ----------
-    log : ndarray, shape (6, bins)
+    log : ndarray, shape (BINS, 6)
         A whitened spectrum less the mean one.
     top : float
         As in `Spectrum`.
-    comb : ndarray, shape (6, orders)
-        The template T.
-    variance : ndarray, shape (6,)
-        s^2 by channel.
+    weight : ndarray, shape (orders, 6)
+        T / s^2 of the template.
+    cost : ndarray, shape (orders,)
+        Sum over channels of T^2 / (2 s^2).
     speeds : ndarray, shape (k,)
         [m/s]
 
@@ -228,15 +228,19 @@ def evidence(log: Array, top: float, comb: Array, variance: Array, speeds: Array
     """
     found = np.zeros(speeds.size)
     for i in range(speeds.size):
+        total = 0.0
         for j in range(ORDERS):
+            if cost[j] == 0.0:
+                continue
             f = (LOWEST + STEP * j) * speeds[i] / WIDTH
             if f * WIDTH >= top:
                 break
             k = int(f)
             w = f - k
+            low = high = 0.0
             for c in range(CHANNELS):
-                t = comb[c, j]
-                if t != 0.0:
-                    y = (1.0 - w) * log[c, k] + w * log[c, k + 1]
-                    found[i] += (y - 0.5 * t) * t / variance[c]
+                low += log[k, c] * weight[j, c]
+                high += log[k + 1, c] * weight[j, c]
+            total += low + w * (high - low) - cost[j]
+        found[i] = total
     return found

@@ -30,7 +30,7 @@ TAUGHT: Final = 3.5
 """Spectra of slower driving are not learned from [m/s]."""
 SURE: Final = 0.5
 """Nor are those where the filter's speed is less certain than this [m/s]."""
-GRID: Final = 0.05
+GRID: Final = 0.08
 """Distance of the speeds that are looked at [m/s]."""
 NEAR: Final = 0.6
 """Half width of a peak [m/s]."""
@@ -118,8 +118,7 @@ class Wheels:
     widest: float = 6.0
     drift: float = 0.1
     patience: float = 2.5
-    samples: Array = field(default_factory=lambda: np.zeros((256, 7)), init=False)
-    filled: int = field(default=0, init=False)
+    felt: list[ImuBlock] = field(default_factory=list, init=False)
     memory: Memory | None = field(default=None, init=False)
     comb: Comb | None = field(default=None, init=False)
     fixed: float = field(default=-math.inf, init=False)
@@ -131,21 +130,7 @@ class Wheels:
 
     def feel(self, block: ImuBlock) -> None:
         """See `Bridge`."""
-        n = len(block.time)
-        if self.filled + n > len(self.samples):
-            self._make_room(n, float(block.time[-1]))
-        rows = self.samples[self.filled : self.filled + n]
-        rows[:, 0] = block.time - 0.5 * block.dt
-        rows[:, 1:4] = block.dtheta / block.dt[:, None]
-        rows[:, 4:] = block.dvel / block.dt[:, None]
-        self.filled += n
-
-    def _make_room(self, n: int, time: float) -> None:
-        """Forget samples older than a window needs, and make sure that n more fit."""
-        old = self.samples[: self.filled]
-        kept = old[np.searchsorted(old[:, 0], time - WINDOW - ROOM - 1.0) :]
-        self.samples = np.zeros((max(256, 2 * (len(kept) + n)), 7))
-        self.samples[: len(kept)], self.filled = kept, len(kept)
+        self.felt.append(block)
 
     def hear(self, belief: Belief, reading: Reading, used: bool) -> None:
         """See `Bridge`: a fix that is used breaks the silence."""
@@ -167,7 +152,7 @@ class Wheels:
 
     def lost(self) -> None:
         """See `Bridge`."""
-        self.filled = 0
+        self.felt = []
 
     def decisions(self, start: float) -> tuple[Decision, ...]:
         """See `Bridge`."""
@@ -183,23 +168,20 @@ class Wheels:
     def copy(self) -> Self:
         """See `Bridge`: sums are shared, for they are never changed."""
         new = copy(self)
-        new.samples = self.samples.copy()
+        new.felt = list(self.felt)
         return new
 
     # --- hearing --------------------------------------------------------------------------------
 
     def _listen(self, belief: Belief, time: float) -> Spectrum | None:
         """The spectrum of the window that ends now, warped by the inertial course of the speed."""
-        if not self.filled:
-            return None
+        rows = self._samples(time - WINDOW - ROOM)
         times, gained = belief.trail.behind(WINDOW)
         if len(times) < 10 or times[0] > time - WINDOW or times[-1] < time - 1e-3:
             return None
         speeds = np.linalg.norm(belief.estimate()[3:6] + gained, axis=1)
         if speeds.min() < 0.5:
             return None
-        rows = self.samples[: self.filled]
-        rows = rows[np.searchsorted(rows[:, 0], time - WINDOW - ROOM) :]
         gaps = np.diff(rows[:, 0])
         if len(rows) < WINDOW * RATE or gaps.max() > 0.2 or rows[0, 0] > time - WINDOW:
             return None
@@ -207,6 +189,17 @@ class Wheels:
         if rate < RATE - 0.5:
             return None
         return spectrum(rows, times, speeds, time, 0.5 * rate - 3.0)
+
+    def _samples(self, begin: float) -> Array:
+        """Time, rates and forces of each sample since a time; older ones are forgotten."""
+        while self.felt and self.felt[0].time[-1] < begin:
+            self.felt.pop(0)
+        if not self.felt:
+            return np.zeros((0, 7))
+        block = ImuBlock.join(self.felt)
+        dt = block.dt[:, None]
+        rows = np.column_stack([block.time - 0.5 * block.dt, block.dtheta / dt, block.dvel / dt])
+        return rows[np.searchsorted(rows[:, 0], begin) :]
 
     def _learn(self, belief: Belief, heard: Spectrum) -> None:
         if heard.speed < TAUGHT or speed_sd(belief) > SURE:
@@ -239,7 +232,7 @@ class Wheels:
         reach = min(max(3.5 * sd, 0.8), self.widest)
         speeds = np.arange(max(0.0, heard.speed - reach), heard.speed + reach, GRID)
         log, audible = np.zeros(len(speeds)), speeds >= SLOWEST
-        if audible.sum() < 8:
+        if audible.sum() < 5:
             return None
         ratio = np.exp(self.temper * comb.evidence(heard, speeds[audible]))
         log[audible] = np.log((1.0 - self.deaf) * ratio + self.deaf)

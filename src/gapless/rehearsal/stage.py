@@ -9,9 +9,9 @@ samples: the same log gives the same bits in a batch, live and after an interrup
 from __future__ import annotations
 
 import math
-from bisect import bisect_left
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from itertools import groupby
 from typing import Any, Final, Self
 
 import numpy as np
@@ -21,7 +21,7 @@ from gapless.events import Event, ImuBlock
 from gapless.journal import Journal
 from gapless.manner import Manner
 from gapless.navigator import Navigator
-from gapless.recording import Array
+from gapless.recording import Array, Trajectory
 from gapless.rehearsal.judge import AGES, Choice, Rehearsed, Trial, choose
 from gapless.settings import Settings
 from gapless.solution import Decision
@@ -61,11 +61,25 @@ class _Open:
 
     start: float
     navigator: Navigator
-    events: list[Event]
+    events: list[Event] = field(default_factory=list)
+    track: list[tuple[float, float, float]] = field(default_factory=list)
+    aided: bool = True
 
     @property
     def samples(self) -> int:
         return sum(len(e.time) for e in self.events if isinstance(e, ImuBlock))
+
+    def script(self) -> list[Event]:
+        """The events, with samples that follow each other in one block."""
+        found = list[Event]()
+        for samples, group in groupby(self.events, lambda e: isinstance(e, ImuBlock)):
+            together = list(group)
+            blocks = [event for event in together if isinstance(event, ImuBlock)]
+            found += [ImuBlock.join(blocks)] if samples else together
+        return found
+
+    def copy(self) -> _Open:
+        return replace(self, events=list(self.events), track=list(self.track))
 
 
 class Rehearsing:
@@ -84,7 +98,7 @@ class Rehearsing:
         self.choice = choose((), plan.bridges, plan.presets)
         self.chosen: tuple[tuple[float, Choice], ...] = ()
         self.due = math.inf
-        self.credit = 0.0
+        self.credit, self.seen = 0.0, 0
         self._adopt()
 
     @property
@@ -127,6 +141,7 @@ class Rehearsing:
                 part = event.rows(first, end)
                 self.navigator.step(part)
                 self._keep(part)
+                self._watch()
                 self.credit += self.plan.budget * (end - first)
                 first = end
             else:
@@ -139,16 +154,9 @@ class Rehearsing:
         -------
         object
         """
-        opened = [replace(o, events=list(o.events)) for o in self.open]
-        return (
-            self.navigator.snapshot(),
-            opened,
-            self.history,
-            self.choice,
-            self.chosen,
-            self.due,
-            self.credit,
-        )
+        opened = [o.copy() for o in self.open]
+        told = self.history, self.choice, self.chosen
+        return self.navigator.snapshot(), opened, told, self.due, self.credit, self.seen
 
     def restore(self, snapshot: Any) -> None:
         """Go back to a snapshot.
@@ -157,9 +165,10 @@ class Rehearsing:
         ----------
         snapshot : object
         """
-        kept, opened, self.history, self.choice, self.chosen, self.due, self.credit = snapshot
+        kept, opened, told, self.due, self.credit, self.seen = snapshot
+        self.history, self.choice, self.chosen = told
         self.navigator.restore(kept)
-        self.open = [replace(o, events=list(o.events)) for o in opened]
+        self.open = [o.copy() for o in opened]
 
     def fork(self) -> Self:
         """A cheap copy that can run ahead, with a journal of its own.
@@ -171,7 +180,7 @@ class Rehearsing:
         new = object.__new__(type(self))
         new.__dict__.update(self.__dict__)
         new.navigator = self.navigator.fork()
-        new.open = [replace(o, events=list(o.events)) for o in self.open]
+        new.open, new.seen = [o.copy() for o in self.open], 0
         return new
 
     def decisions(self, start: float) -> tuple[Decision, ...]:
@@ -192,9 +201,9 @@ class Rehearsing:
         who = Decision("bridge chosen", c.bridge or "nobody", "", "data", asked + since)
         how = Decision("tuning chosen", c.preset or "the recipe's own", "", "data", asked)
         sure = Decision("stated covariance in silence", round(c.scale, 2), "times", "data", asked)
-        rows = [("bridge", s) for s in c.bridges] + [("tuning", s) for s in c.presets]
         told = (
-            Decision(f"rehearsed {kind} {s.name}", *_verdict(s.earned), "data", s.text) for kind, s in rows
+            Decision(f"rehearsed, {s.name}", "better" if s.earned else "not better", "", "data", s.text)
+            for s in (*c.bridges, *c.presets)
         )
         return (who, *([how] if c.presets else []), sure, *told)
 
@@ -208,6 +217,17 @@ class Rehearsing:
             for one in self.open:
                 one.events.append(event)
 
+    def _watch(self) -> None:
+        """Note the rows that were written: where the navigator was, and whether GNSS held it."""
+        rows = self.journal
+        if self.open and self.seen < len(rows.times):
+            new = slice(self.seen, None)
+            track = [(t, x[0], x[1]) for t, x in zip(rows.times[new], rows.states[new], strict=True)]
+            for one in self.open:
+                one.track += track
+                one.aided &= all(source == "gnss" for source in rows.sources[new])
+        self.seen = len(rows.times)
+
     def _act(self) -> None:
         """Do what is due before the next sample."""
         now = self._next()
@@ -216,19 +236,18 @@ class Rehearsing:
             return
         self.due = now + self.plan.every
         if self.navigator.aided:
-            self.open.append(_Open(now, self.navigator.fork(), []))
+            self.open.append(_Open(now, self.navigator.fork()))
 
     def _rehearse(self, one: _Open) -> None:
         """Replay an outage in every manner that the budget allows; adopt what comes of it."""
-        times, track = _track(self.journal, one.start)
-        if times is None:
+        if not one.aided or len(one.track) < 10:
             return
-        cost, trials = one.samples, []
+        cost, events, trials = one.samples, one.script(), list[Trial]()
         for bridge, preset in self._order():
             if trials and self.credit < cost:
                 break
             self.credit -= cost
-            trials.append(self._try(one, bridge, preset, times, track))
+            trials.append(self._try(one, events, bridge, preset))
         self.history = (*self.history, Rehearsed(one.start, one.start + self.plan.length, tuple(trials)))
         choice = choose(self.history, self.plan.bridges, self.plan.presets)
         if choice[:2] != self.choice[:2]:
@@ -244,23 +263,12 @@ class Rehearsing:
         presets = sorted(tried, key=tried.__getitem__)
         return [("", ""), *((b, "") for b in self.plan.bridges), *((self.choice.bridge, p) for p in presets)]
 
-    def _try(self, one: _Open, bridge: str, preset: str, times: Array, track: Array) -> Trial:
+    def _try(self, one: _Open, events: list[Event], bridge: str, preset: str) -> Trial:
         navigator = one.navigator.fork()
         navigator.adopt(self._manner(bridge, preset, 1.0))
-        for event in one.events:
+        for event in events:
             navigator.step(event)
-        rows = navigator.journal.trajectory()
-        rows = rows.take(rows.time <= times[-1])
-        here = np.column_stack([np.interp(rows.time, times, track[:, k]) for k in range(2)])
-        off = rows.lla[:, :2] - here
-        r_m, r_n = earth.radii(np.sin(here[:, 0]))
-        off *= np.column_stack([r_m, r_n * np.cos(here[:, 0])])
-        nn, ee = (rows.sd[:, k] ** 2 + REFERENCE**2 for k in range(2))
-        square = ee * off[:, 0] ** 2 - 2.0 * rows.horizontal * off[:, 0] * off[:, 1] + nn * off[:, 1] ** 2
-        nees = square / (nn * ee - rows.horizontal**2)
-        at = np.searchsorted(rows.time, np.arange(one.start + AGES, times[-1], AGES))
-        worst = float(np.hypot(off[:, 0], off[:, 1]).max())
-        return Trial(bridge, preset, worst, tuple(nees[at[at < len(nees)]].tolist()))
+        return Trial(bridge, preset, *_apart(navigator.journal.trajectory(), np.array(one.track), one.start))
 
     def _adopt(self) -> None:
         self.navigator.adopt(self._manner(self.choice.bridge, self.choice.preset, self.choice.scale))
@@ -270,13 +278,15 @@ class Rehearsing:
         return replace(tuned, voices=self.plan.bridges.get(bridge, ()), scale=scale)
 
 
-def _track(journal: Journal, start: float) -> tuple[Array, Array] | tuple[None, None]:
-    """Times, latitude and longitude of the aided track since a time; nothing where GNSS fell silent."""
-    first = bisect_left(journal.times, start)
-    if first >= len(journal.times) - 10 or any(source != "gnss" for source in journal.sources[first:]):
-        return None, None
-    return np.array(journal.times[first:]), np.array([x[:2] for x in journal.states[first:]])
-
-
-def _verdict(earned: bool) -> tuple[str, str]:
-    return ("better" if earned else "not better"), ""
+def _apart(rows: Trajectory, track: Array, start: float) -> tuple[float, tuple[float, ...]]:
+    """Largest distance from the aided track [m], and squared Mahalanobis distances `AGES` apart."""
+    rows = rows.take(rows.time <= track[-1, 0])
+    here = np.column_stack([np.interp(rows.time, track[:, 0], track[:, 1 + k]) for k in range(2)])
+    r_m, r_n = earth.radii(np.sin(here[:, 0]))
+    north = (rows.lla[:, 0] - here[:, 0]) * r_m
+    east = (rows.lla[:, 1] - here[:, 1]) * r_n * np.cos(here[:, 0])
+    nn, ee = (rows.sd[:, k] ** 2 + REFERENCE**2 for k in range(2))
+    square = ee * north**2 - 2.0 * rows.horizontal * north * east + nn * east**2
+    nees = square / (nn * ee - rows.horizontal**2)
+    at = np.searchsorted(rows.time, np.arange(start + AGES, track[-1, 0], AGES))
+    return float(np.hypot(north, east).max()), tuple(nees[at[at < len(nees)]].tolist())

@@ -98,7 +98,7 @@ def navigator_for(
         return Navigator(built)
     own = () if system.bridge.model == "none" else (system.bridge.model,)
     names = (*own, *(other.name for other in candidates(system)))
-    bridges = {name: (k,) for k, name in enumerate(names)}
+    bridges: dict[str, tuple[int, ...]] = {name: (k,) for k, name in enumerate(names)}
     if own:
         bridges |= {f"{own[0]}+{name}": (0, k) for k, name in enumerate(names) if k}
     presets = {}
