@@ -99,8 +99,6 @@ class Wheels:
         Share of the probability that the peak must hold.
     widest : float
         Speeds farther from the filter's than this are not looked at [m/s].
-    drift : float
-        What a filter's speed may go wrong in a second without a reading, whatever it states [m/s].
     patience : float
         Without a fix for so long, GNSS is silent [s].
     """
@@ -116,14 +114,12 @@ class Wheels:
     deaf: float = 0.2
     mass: float = 0.8
     widest: float = 6.0
-    drift: float = 0.1
     patience: float = 2.5
     felt: list[ImuBlock] = field(default_factory=list, init=False)
     memory: Memory | None = field(default=None, init=False)
     comb: Comb | None = field(default=None, init=False)
     fixed: float = field(default=-math.inf, init=False)
     due: float = field(default=-math.inf, init=False)
-    read: float = field(default=-math.inf, init=False)
     readings: tuple[Heard, ...] = field(default=(), init=False)
     refused: int = field(default=0, init=False)
     reach: ClassVar[float] = WINDOW + ROOM
@@ -212,8 +208,7 @@ class Wheels:
             return ()
         if self.comb is None:
             self.comb = self.memory.comb()
-        silence = time - max(self.fixed, self.read)
-        sd = math.hypot(self.doubt * speed_sd(belief), 0.3, self.drift * silence)
+        sd = math.hypot(self.doubt * speed_sd(belief), 0.3)
         peak = self._peak(self.comb, heard, sd)
         if peak is None:
             self.refused += 1
@@ -223,7 +218,6 @@ class Wheels:
         speed = float(np.linalg.norm(v))
         h = np.zeros((1, belief.layout.n))
         h[0, 3:6] = v / speed
-        self.read = time
         self.readings = (*self.readings, Heard(time, speed + peak.off, math.sqrt(r)))
         return (Saying("bridge_speed", Observation(np.array([peak.off]), h, np.array([[r]]))),)
 
