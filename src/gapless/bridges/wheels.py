@@ -146,6 +146,10 @@ class Wheels:
         self._learn(belief, heard)
         return ()
 
+    def begin_with(self, other: Self) -> None:
+        """See `Bridge`: a car's wheels are the same all day."""
+        self.memory, self.comb = other.memory, None
+
     def lost(self) -> None:
         """See `Bridge`."""
         self.felt = []

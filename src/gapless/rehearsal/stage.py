@@ -121,6 +121,11 @@ class Rehearsing:
         """The navigator's bridges as they are now."""
         return list(self.navigator.bridges)
 
+    @property
+    def manner(self) -> Manner:
+        """How the next outage is met."""
+        return self._manner(self.choice.bridge, self.choice.preset, self.choice.scale)
+
     def step(self, event: Event) -> None:
         """Take in one event; see `Navigator.step`.
 
@@ -271,7 +276,7 @@ class Rehearsing:
         return Trial(bridge, preset, *_apart(navigator.journal.trajectory(), np.array(one.track), one.start))
 
     def _adopt(self) -> None:
-        self.navigator.adopt(self._manner(self.choice.bridge, self.choice.preset, self.choice.scale))
+        self.navigator.adopt(self.manner)
 
     def _manner(self, bridge: str, preset: str, scale: float) -> Manner:
         tuned = self.plan.presets[preset] if preset else self.settings.manner
