@@ -36,8 +36,45 @@ NEAR: Final = 0.6
 """Half width of a peak [m/s]."""
 RATE: Final = 25.0
 """A slower IMU hears no wheels [Hz]."""
+CRAWL: Final = 0.5
+"""Time is not warped to slower speeds [m/s]."""
 ROOM: Final = 0.4
 """Samples and velocities are kept for so much longer than a window [s]."""
+
+
+class Window(NamedTuple):
+    """Samples and a course of the speed.
+
+    Parameters
+    ----------
+    rows, times, speeds
+        As `orders.spectrum` takes them.
+    end : float
+        [s]
+    top : float
+        Highest frequency [Hz].
+    """
+
+    rows: Array
+    times: Array
+    speeds: Array
+    end: float
+    top: float
+
+    def spectrum(self, slope: float) -> Spectrum:
+        """Order spectrum, should the speed have gained more than the filter thinks.
+
+        Parameters
+        ----------
+        slope : float
+            By so much more in a second [m/s^2].
+
+        Returns
+        -------
+        Spectrum
+        """
+        speeds = np.maximum(self.speeds + slope * (self.times - self.end), CRAWL)
+        return spectrum(self.rows, self.times, speeds, self.end, self.top)
 
 
 class Peak(NamedTuple):
@@ -99,6 +136,9 @@ class Wheels:
         Share of the probability that the peak must hold.
     widest : float
         Speeds farther from the filter's than this are not looked at [m/s].
+    slopes : tuple of float
+        Errors of the filter's acceleration that are tried in turn until a comb is found: tilts learned
+        wrong on a hill [m/s^2].
     patience : float
         Without a fix for so long, GNSS is silent [s].
     """
@@ -114,6 +154,7 @@ class Wheels:
     deaf: float = 0.2
     mass: float = 0.8
     widest: float = 6.0
+    slopes: tuple[float, ...] = (0.0, -0.3, 0.3)
     patience: float = 2.5
     felt: list[ImuBlock] = field(default_factory=list, init=False)
     memory: Memory | None = field(default=None, init=False)
@@ -138,12 +179,12 @@ class Wheels:
         if motion.time < self.due:
             return ()
         self.due = motion.time + self.period - 0.5 * motion.dt
-        heard = self._listen(belief, motion.time)
-        if heard is None:
+        window = self._window(belief, motion.time)
+        if window is None:
             return ()
         if motion.time - self.fixed > self.patience:
-            return self._speak(belief, heard, motion.time)
-        self._learn(belief, heard)
+            return self._speak(belief, window)
+        self._learn(belief, window.spectrum(0.0))
         return ()
 
     def begin_with(self, other: Self) -> None:
@@ -173,22 +214,20 @@ class Wheels:
 
     # --- hearing --------------------------------------------------------------------------------
 
-    def _listen(self, belief: Belief, time: float) -> Spectrum | None:
-        """The spectrum of the window that ends now, warped by the inertial course of the speed."""
+    def _window(self, belief: Belief, time: float) -> Window | None:
+        """The window that ends now, with the inertial course of the speed; None where it holds too little."""
         rows = self._samples(time - WINDOW - ROOM)
         times, gained = belief.trail.behind(WINDOW)
         if len(times) < 10 or times[0] > time - WINDOW or times[-1] < time - 1e-3:
             return None
         speeds = np.linalg.norm(belief.estimate()[3:6] + gained, axis=1)
-        if speeds.min() < 0.5:
+        if speeds.min() < CRAWL:
             return None
         gaps = np.diff(rows[:, 0])
         if len(rows) < WINDOW * RATE or gaps.max() > 0.2 or rows[0, 0] > time - WINDOW:
             return None
         rate = 1.0 / float(np.median(gaps))
-        if rate < RATE - 0.5:
-            return None
-        return spectrum(rows, times, speeds, time, 0.5 * rate - 3.0)
+        return None if rate < RATE - 0.5 else Window(rows, times, speeds, time, 0.5 * rate - 3.0)
 
     def _samples(self, begin: float) -> Array:
         """Time, rates and forces of each sample since a time; older ones are forgotten."""
@@ -207,13 +246,14 @@ class Wheels:
         memory = self.memory or Memory.empty(heard.top)
         self.memory, self.comb = memory.after(heard), None
 
-    def _speak(self, belief: Belief, heard: Spectrum, time: float) -> tuple[Saying, ...]:
+    def _speak(self, belief: Belief, window: Window) -> tuple[Saying, ...]:
         if self.memory is None or self.memory.windows < self.least:
             return ()
         if self.comb is None:
             self.comb = self.memory.comb()
         sd = math.hypot(self.doubt * speed_sd(belief), 0.3)
-        peak = self._peak(self.comb, heard, sd)
+        peaks = (self._peak(self.comb, window.spectrum(slope), sd) for slope in self.slopes)
+        peak = next((peak for peak in peaks if peak is not None), None)
         if peak is None:
             self.refused += 1
             return ()
@@ -222,7 +262,7 @@ class Wheels:
         speed = float(np.linalg.norm(v))
         h = np.zeros((1, belief.layout.n))
         h[0, 3:6] = v / speed
-        self.readings = (*self.readings, Heard(time, speed + peak.off, math.sqrt(r)))
+        self.readings = (*self.readings, Heard(window.end, speed + peak.off, math.sqrt(r)))
         return (Saying("bridge_speed", Observation(np.array([peak.off]), h, np.array([[r]]))),)
 
     def _peak(self, comb: Comb, heard: Spectrum, sd: float) -> Peak | None:

@@ -22,14 +22,12 @@ from gapless.journal import Journal
 from gapless.manner import Manner
 from gapless.navigator import Navigator
 from gapless.recording import Array, Trajectory
-from gapless.rehearsal.judge import AGES, Choice, Rehearsed, Trial, choose
+from gapless.rehearsal.judge import AGES, REFERENCE, Choice, Rehearsed, Trial, choose
 from gapless.settings import Settings
 from gapless.solution import Decision
 
 SETTLE: Final = 30.0
 """After its alignment a navigator is left alone for so long [s]."""
-REFERENCE: Final = 2.0
-"""Standard deviation of the aided track, by axis: errors that fixes share [m]."""
 
 
 @dataclass(frozen=True)
