@@ -159,6 +159,7 @@ class Wheels:
     felt: list[ImuBlock] = field(default_factory=list, init=False)
     memory: Memory | None = field(default=None, init=False)
     comb: Comb | None = field(default=None, init=False)
+    rate: float = field(default=math.nan, init=False)
     fixed: float = field(default=-math.inf, init=False)
     due: float = field(default=-math.inf, init=False)
     readings: tuple[Heard, ...] = field(default=(), init=False)
@@ -197,8 +198,11 @@ class Wheels:
 
     def decisions(self, start: float) -> tuple[Decision, ...]:
         """See `Bridge`."""
+        if self.rate < RATE - 0.5:
+            slow = f"the IMU logs {self.rate:.0f} samples a second; {RATE:g} are needed"
+            return (Decision("wheels heard", 0, "spectra", "data", slow),)
         if self.memory is None:
-            return ()
+            return (Decision("wheels heard", 0, "spectra", "data", "no driving fast enough to learn from"),)
         said = f"{len(self.readings)} speeds read in silence, {self.refused} spectra that said too little"
         return (Decision("wheels heard", round(self.memory.windows), "spectra", "data", said),)
 
@@ -217,6 +221,8 @@ class Wheels:
     def _window(self, belief: Belief, time: float) -> Window | None:
         """The window that ends now, with the inertial course of the speed; None where it holds too little."""
         rows = self._samples(time - WINDOW - ROOM)
+        if len(rows) > 2:
+            self.rate = 1.0 / float(np.median(np.diff(rows[:, 0])))
         times, gained = belief.trail.behind(WINDOW)
         if len(times) < 10 or times[0] > time - WINDOW or times[-1] < time - 1e-3:
             return None
@@ -224,10 +230,9 @@ class Wheels:
         if speeds.min() < CRAWL:
             return None
         gaps = np.diff(rows[:, 0])
-        if len(rows) < WINDOW * RATE or gaps.max() > 0.2 or rows[0, 0] > time - WINDOW:
+        if self.rate < RATE - 0.5 or gaps.max() > 0.2 or rows[0, 0] > time - WINDOW:
             return None
-        rate = 1.0 / float(np.median(gaps))
-        return None if rate < RATE - 0.5 else Window(rows, times, speeds, time, 0.5 * rate - 3.0)
+        return Window(rows, times, speeds, time, 0.5 * self.rate - 3.0)
 
     def _samples(self, begin: float) -> Array:
         """Time, rates and forces of each sample since a time; older ones are forgotten."""
