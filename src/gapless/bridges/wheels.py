@@ -42,41 +42,6 @@ ROOM: Final = 0.4
 """Samples and velocities are kept for so much longer than a window [s]."""
 
 
-class Window(NamedTuple):
-    """Samples and a course of the speed.
-
-    Parameters
-    ----------
-    rows, times, speeds
-        As `orders.spectrum` takes them.
-    end : float
-        [s]
-    top : float
-        Highest frequency [Hz].
-    """
-
-    rows: Array
-    times: Array
-    speeds: Array
-    end: float
-    top: float
-
-    def spectrum(self, slope: float) -> Spectrum:
-        """Order spectrum, should the speed have gained more than the filter thinks.
-
-        Parameters
-        ----------
-        slope : float
-            By so much more in a second [m/s^2].
-
-        Returns
-        -------
-        Spectrum
-        """
-        speeds = np.maximum(self.speeds + slope * (self.times - self.end), CRAWL)
-        return spectrum(self.rows, self.times, speeds, self.end, self.top)
-
-
 class Peak(NamedTuple):
     """What a spectrum says about the speed.
 
@@ -136,9 +101,6 @@ class Wheels:
         Share of the probability that the peak must hold.
     widest : float
         Speeds farther from the filter's than this are not looked at [m/s].
-    slopes : tuple of float
-        Errors of the filter's acceleration that are tried in turn until a comb is found: tilts learned
-        wrong on a hill [m/s^2].
     patience : float
         Without a fix for so long, GNSS is silent [s].
     """
@@ -154,7 +116,6 @@ class Wheels:
     deaf: float = 0.2
     mass: float = 0.8
     widest: float = 6.0
-    slopes: tuple[float, ...] = (0.0, -0.3, 0.3)
     patience: float = 2.5
     felt: list[ImuBlock] = field(default_factory=list, init=False)
     memory: Memory | None = field(default=None, init=False)
@@ -180,12 +141,12 @@ class Wheels:
         if motion.time < self.due:
             return ()
         self.due = motion.time + self.period - 0.5 * motion.dt
-        window = self._window(belief, motion.time)
-        if window is None:
+        heard = self._listen(belief, motion.time)
+        if heard is None:
             return ()
         if motion.time - self.fixed > self.patience:
-            return self._speak(belief, window)
-        self._learn(belief, window.spectrum(0.0))
+            return self._speak(belief, heard, motion.time)
+        self._learn(belief, heard)
         return ()
 
     def begin_with(self, other: Self) -> None:
@@ -218,8 +179,8 @@ class Wheels:
 
     # --- hearing --------------------------------------------------------------------------------
 
-    def _window(self, belief: Belief, time: float) -> Window | None:
-        """The window that ends now, with the inertial course of the speed; None where it holds too little."""
+    def _listen(self, belief: Belief, time: float) -> Spectrum | None:
+        """The spectrum of the window that ends now, warped by the inertial course of the speed."""
         rows = self._samples(time - WINDOW - ROOM)
         if len(rows) > 2:
             self.rate = 1.0 / float(np.median(np.diff(rows[:, 0])))
@@ -232,7 +193,7 @@ class Wheels:
         gaps = np.diff(rows[:, 0])
         if self.rate < RATE - 0.5 or gaps.max() > 0.2 or rows[0, 0] > time - WINDOW:
             return None
-        return Window(rows, times, speeds, time, 0.5 * self.rate - 3.0)
+        return spectrum(rows, times, speeds, time, 0.5 * self.rate - 3.0)
 
     def _samples(self, begin: float) -> Array:
         """Time, rates and forces of each sample since a time; older ones are forgotten."""
@@ -251,14 +212,13 @@ class Wheels:
         memory = self.memory or Memory.empty(heard.top)
         self.memory, self.comb = memory.after(heard), None
 
-    def _speak(self, belief: Belief, window: Window) -> tuple[Saying, ...]:
+    def _speak(self, belief: Belief, heard: Spectrum, time: float) -> tuple[Saying, ...]:
         if self.memory is None or self.memory.windows < self.least:
             return ()
         if self.comb is None:
             self.comb = self.memory.comb()
         sd = math.hypot(self.doubt * speed_sd(belief), 0.3)
-        peaks = (self._peak(self.comb, window.spectrum(slope), sd) for slope in self.slopes)
-        peak = next((peak for peak in peaks if peak is not None), None)
+        peak = self._peak(self.comb, heard, sd)
         if peak is None:
             self.refused += 1
             return ()
@@ -267,7 +227,7 @@ class Wheels:
         speed = float(np.linalg.norm(v))
         h = np.zeros((1, belief.layout.n))
         h[0, 3:6] = v / speed
-        self.readings = (*self.readings, Heard(window.end, speed + peak.off, math.sqrt(r)))
+        self.readings = (*self.readings, Heard(time, speed + peak.off, math.sqrt(r)))
         return (Saying("bridge_speed", Observation(np.array([peak.off]), h, np.array([[r]]))),)
 
     def _peak(self, comb: Comb, heard: Spectrum, sd: float) -> Peak | None:
