@@ -20,11 +20,11 @@ if TYPE_CHECKING:
 @click.argument("recordings", nargs=-1, type=click.Path(path_type=Path), metavar="[RECORDING]...")
 @click.option(
     "--systems",
-    default="ins,constraints",
+    default="ins,constraints,auto",
     show_default=True,
     metavar="NAMES",
-    help="Built-in recipes (ins, constraints), smoothed or smoothed+wheels (not causal: a bound), or TOML files of your own; "
-    "the others are compared with the first.",
+    help="Built-in recipes (ins, auto), smoothed or smoothed+wheels (not causal: a bound), or TOML files of "
+    "your own; the others are compared with the first.",
 )
 @click.option(
     "--length", default="10,30,60,120", show_default=True, metavar="SECONDS", help="Lengths of the outages."
