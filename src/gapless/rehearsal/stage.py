@@ -30,6 +30,10 @@ SETTLE: Final = 30.0
 """After its alignment a navigator is left alone for so long [s]."""
 
 
+RESERVE: Final = 10
+"""Candidates that may be tried on credit, so that there is a choice early in a drive."""
+
+
 @dataclass(frozen=True)
 class Plan:
     """What is rehearsed, and how much.
@@ -43,14 +47,14 @@ class Plan:
     every, length : float
         A rehearsal begins so often, and lasts so long [s].
     budget : float
-        Samples that may be replayed for each sample that comes in.
+        Samples that may be replayed for each sample that comes in, besides `RESERVE`.
     """
 
     bridges: Mapping[str, tuple[int, ...]]
     presets: Mapping[str, Manner] = field(default_factory=dict)
     every: float = 20.0
     length: float = 60.0
-    budget: float = 12.0
+    budget: float = 2.0
 
 
 @dataclass
@@ -246,6 +250,10 @@ class Rehearsing:
         if not one.aided or len(one.track) < 10:
             return
         cost, events, trials = one.samples, one.script(), list[Trial]()
+        if not self.history:
+            self.credit = max(self.credit, RESERVE * cost)
+        if self.credit < cost * (1 + len(self.plan.bridges)):
+            return
         for bridge, preset in self._order():
             if trials and self.credit < cost:
                 break
