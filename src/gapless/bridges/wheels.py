@@ -171,7 +171,7 @@ class Wheels:
 
     def _listen(self, belief: Belief, time: float) -> Spectrum | None:
         """The spectrum of the window that ends now, warped by the inertial course of the speed."""
-        rows = self._samples(time - WINDOW - ROOM)
+        rows = self._samples(time - WINDOW - ROOM, time)
         times, gained = belief.trail.behind(WINDOW)
         if len(times) < 10 or times[0] > time - WINDOW or times[-1] < time - 1e-3:
             return None
@@ -186,13 +186,14 @@ class Wheels:
             return None
         return spectrum(rows, times, speeds, time, 0.5 * rate - 3.0)
 
-    def _samples(self, begin: float) -> Array:
-        """Time, rates and forces of each sample since a time; older ones are forgotten."""
+    def _samples(self, begin: float, end: float) -> Array:
+        """Time, rates and forces of each sample between two times; older ones are forgotten."""
         while self.felt and self.felt[0].time[-1] < begin:
             self.felt.pop(0)
         if not self.felt:
             return np.zeros((0, 7))
         block = ImuBlock.join(self.felt)
+        block = block.rows(0, int(np.searchsorted(block.time, end, side="right")))  # felt goes ahead
         dt = block.dt[:, None]
         rows = np.column_stack([block.time - 0.5 * block.dt, block.dtheta / dt, block.dvel / dt])
         return rows[np.searchsorted(rows[:, 0], begin) :]
