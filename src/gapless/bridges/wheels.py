@@ -181,7 +181,7 @@ class Wheels:
 
     def _listen(self, belief: Belief, time: float) -> Spectrum | None:
         """The spectrum of the window that ends now, warped by the inertial course of the speed."""
-        rows = self._samples(time - WINDOW - ROOM)
+        rows = self._samples(time - WINDOW - ROOM, time)
         if len(rows) > 2:
             self.rate = 1.0 / float(np.median(np.diff(rows[:, 0])))
         times, gained = belief.trail.behind(WINDOW)
@@ -195,13 +195,14 @@ class Wheels:
             return None
         return spectrum(rows, times, speeds, time, 0.5 * self.rate - 3.0)
 
-    def _samples(self, begin: float) -> Array:
-        """Time, rates and forces of each sample since a time; older ones are forgotten."""
+    def _samples(self, begin: float, end: float) -> Array:
+        """Time, rates and forces of each sample between two times; older ones are forgotten."""
         while self.felt and self.felt[0].time[-1] < begin:
             self.felt.pop(0)
         if not self.felt:
             return np.zeros((0, 7))
         block = ImuBlock.join(self.felt)
+        block = block.rows(0, int(np.searchsorted(block.time, end, side="right")))  # felt goes ahead
         dt = block.dt[:, None]
         rows = np.column_stack([block.time - 0.5 * block.dt, block.dtheta / dt, block.dvel / dt])
         return rows[np.searchsorted(rows[:, 0], begin) :]

@@ -16,7 +16,7 @@ import numpy as np
 REFERENCE: Final = 2.0
 """Standard deviation of the aided track, by axis: errors that fixes share [m]."""
 TOGETHER: Final = 3.0
-"""So many rehearsals count as one independent one."""
+"""So many rehearsals count as one independent one; fewer tell nothing."""
 CONFIDENCE: Final = 0.5
 """Standard errors by which a bridge must be better, one-sided."""
 PRIOR: Final = 5.0
@@ -80,7 +80,7 @@ class Score(NamedTuple):
     error : float
         Standard error of the mean.
     earned : bool
-        Whether it is better by `CONFIDENCE` of these.
+        Whether it is better by `CONFIDENCE` of these, in no fewer than `TOGETHER`.
     """
 
     name: str
@@ -156,7 +156,8 @@ def judged(name: str, ratios: Sequence[float]) -> Score:
     x = np.asarray(ratios)
     squares = float(((x - x.mean()) ** 2).sum()) + PRIOR_SCATTER * SCATTER**2
     error = math.sqrt(squares / (n - 1 + PRIOR_SCATTER) / max(1.0, n / TOGETHER))
-    return Score(name, n, float(x.sum()) / (n + PRIOR), error, float(x.mean()) + CONFIDENCE * error < 0.0)
+    earned = n >= TOGETHER and float(x.mean()) + CONFIDENCE * error < 0.0
+    return Score(name, n, float(x.sum()) / (n + PRIOR), error, earned)
 
 
 def best(scores: Sequence[Score]) -> str:

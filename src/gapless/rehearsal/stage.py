@@ -163,7 +163,7 @@ class Rehearsing:
         """
         opened = [o.copy() for o in self.open]
         told = self.history, self.choice, self.chosen
-        return self.navigator.snapshot(), opened, told, self.due, self.credit, self.seen
+        return self.navigator.snapshot(), opened, told, self.due, self.credit
 
     def restore(self, snapshot: Any) -> None:
         """Go back to a snapshot.
@@ -172,9 +172,10 @@ class Rehearsing:
         ----------
         snapshot : object
         """
-        kept, opened, told, self.due, self.credit, self.seen = snapshot
+        kept, opened, told, self.due, self.credit = snapshot
         self.history, self.choice, self.chosen = told
         self.navigator.restore(kept)
+        self.seen = len(self.journal.times)
         self.open = [o.copy() for o in opened]
 
     def fork(self) -> Self:
