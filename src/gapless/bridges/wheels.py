@@ -17,8 +17,9 @@ import numpy as np
 
 from gapless.bridges.base import Saying
 from gapless.bridges.comb import Comb, Memory
-from gapless.bridges.orders import WINDOW, Spectrum, spectrum
+from gapless.bridges.orders import LOWEST, ORDERS, STEP, WINDOW, Spectrum, spectrum
 from gapless.events import ImuBlock, Motion, Reading
+from gapless.exhibits import Heard, WheelsHeard, fundamental
 from gapless.inertial.belief import Belief
 from gapless.measurements.base import Observation, Sensor
 from gapless.recording import Array
@@ -53,22 +54,6 @@ class Peak(NamedTuple):
 
     off: float
     variance: float
-
-
-class Heard(NamedTuple):
-    """A reading, for the report.
-
-    Parameters
-    ----------
-    time : float
-        [s]
-    speed, sd : float
-        [m/s]
-    """
-
-    time: float
-    speed: float
-    sd: float
 
 
 @dataclass
@@ -157,6 +142,16 @@ class Wheels:
         said = f"{len(self.readings)} speeds read in silence, {self.refused} spectra that said too little"
         return (Decision("wheels heard", round(self.memory.windows), "spectra", "data", said),)
 
+    def exhibit(self) -> WheelsHeard | None:
+        """See `Bridge`."""
+        if self.memory is None:
+            return None
+        comb, orders = self.memory.comb(), LOWEST + STEP * np.arange(ORDERS)
+        found = fundamental(orders, comb.height, comb.error)
+        return WheelsHeard(
+            self.memory.windows, orders, comb.height, comb.error, *found, self.readings, self.refused
+        )
+
     def learned(self) -> object | None:
         """See `Bridge`."""
         return None
@@ -218,7 +213,7 @@ class Wheels:
         speed = float(np.linalg.norm(v))
         h = np.zeros((1, belief.layout.n))
         h[0, 3:6] = v / speed
-        self.readings = (*self.readings, Heard(time, speed + peak.off, math.sqrt(r)))
+        self.readings = (*self.readings, Heard(time, speed + peak.off, math.sqrt(r), speed))
         return (Saying("bridge_speed", Observation(np.array([peak.off]), h, np.array([[r]]))),)
 
     def _peak(self, comb: Comb, heard: Spectrum, sd: float) -> Peak | None:

@@ -27,6 +27,9 @@ class _Listener:
     def __init__(self, start):
         self.start, self.shadow, self.apart = start, Shadow(), []
 
+    def feel(self, block):
+        pass
+
     def hear(self, belief, reading, used):
         pass
 
