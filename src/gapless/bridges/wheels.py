@@ -137,16 +137,19 @@ class Wheels:
 
     def decisions(self, start: float) -> tuple[Decision, ...]:
         """See `Bridge`."""
-        if self.memory is None:
+        shown = self.exhibit()
+        if shown is None:
             return ()
+        around = shown.circumference
+        size = f"{around:.2f} m in circumference" if around else "no comb stands out"
         said = f"{len(self.readings)} speeds read in silence, {self.refused} spectra that said too little"
-        return (Decision("wheels heard", round(self.memory.windows), "spectra", "data", said),)
+        return (Decision("wheels heard", round(shown.spectra), "spectra", "data", f"{size}; {said}"),)
 
     def exhibit(self) -> WheelsHeard | None:
         """See `Bridge`."""
         if self.memory is None:
             return None
-        comb, orders = self.memory.comb(), LOWEST + STEP * np.arange(ORDERS)
+        comb, orders = self.memory.comb(), np.asarray(LOWEST + STEP * np.arange(ORDERS), float)
         found = fundamental(orders, comb.height, comb.error)
         return WheelsHeard(
             self.memory.windows, orders, comb.height, comb.error, *found, self.readings, self.refused

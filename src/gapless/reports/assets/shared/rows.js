@@ -63,6 +63,30 @@ function shadeStretches(u, stretches) {
   ctx.restore();
 }
 
+// Upright lines at values of the horizontal axis.
+function upright(u, values) {
+  const { ctx } = u, { left, top, width, height } = u.bbox, ratio = devicePixelRatio || 1;
+  ctx.save();
+  ctx.fillStyle = colour("alone", 0.55);
+  for (const v of values) {
+    const x = u.valToPos(v, "x", true);
+    if (x >= left && x <= left + width) ctx.fillRect(x - ratio / 2, top, ratio, height);
+  }
+  ctx.restore();
+}
+
+// Which of the series holds in which stretch, along the bottom.
+function stripsBelow(u, spec) {
+  const { ctx } = u, { left, top, width, height } = u.bbox, high = 5 * (devicePixelRatio || 1);
+  ctx.save();
+  for (const [a, b, k] of spec.strips) {
+    const x0 = Math.max(left, u.valToPos(a, "x", true)), x1 = Math.min(left + width, u.valToPos(b, "x", true));
+    ctx.fillStyle = colour(spec.series[k].hue || "c" + (k % 7));
+    if (x1 > x0) ctx.fillRect(x0, top + height - high, x1 - x0, high);
+  }
+  ctx.restore();
+}
+
 // Values that a logarithmic axis shows: powers of ten, with 2, 3 and 5 between where they are few.
 function logTicks(low, high) {
   const a = Math.floor(Math.log10(low)), b = Math.ceil(Math.log10(high)), found = [];
