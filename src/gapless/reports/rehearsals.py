@@ -48,11 +48,11 @@ def text(summary: Mapping[str, Any]) -> str:
             *numeric(
                 str(s["rehearsals"]), number(s["ratio"]), f"{number(s['low'])}\u2013{number(s['high'])}"
             ),
-            "good enough to be chosen" if s["earned"] else "not good enough",
+            "yes" if s["earned"] else "no",
         ]
         for s in told["standings"]
     ]
-    made = table("Candidates", [*head, "At the end"], rows)
+    made = table("Candidates", [*head, "Good enough"], rows)
     note = (
         "Ratios are of the largest errors in the same outage, their geometric mean drawn towards 1 as if "
         "there had been a few rehearsals more without any difference."

@@ -105,8 +105,14 @@ def _speeds(readings: Mapping[str, Any], start: float, gnss: Gnss | None) -> Ite
     off = speed - against
     half = 1.1 * max(float(np.nanmax(np.abs(off))), 2.0 * float(sd.max()))
     title = f"Reading less {name}"
-    apart = chart("", title, "m/s", time - start, [("off", off)], sd[:, None], range=(-half, half), dots=True)
-    yield apart | {"host": HOST, "note": "Shaded: the standard deviation that the filter was told."}
+    apart = chart(
+        "", title, "m/s", time - start, [("reading", off)], sd[:, None], range=(-half, half), dots=True
+    )
+    yield apart | {
+        "host": HOST,
+        "lift": True,
+        "note": "Shaded: the standard deviation that the filter was told.",
+    }
 
 
 def speed_at(gnss: Gnss, time: Array) -> Array:

@@ -6,7 +6,7 @@ function chartRows(spec) {
   const out = [[], ...columns.map(() => []), ...edges.map(() => [])];
   const lift = x => { out[0].push(x); for (let c = 1; c < out.length; c++) out[c].push(null); };
   for (let i = 0; i < n; i++) {
-    if (i && !dots) {
+    if (i && (!dots || spec.lift)) {
       const jumps = wrap && columns.some(y => y[i] !== null && y[i - 1] !== null && Math.abs(y[i] - y[i - 1]) > wrap / 2);
       if (t[i] - t[i - 1] > gap || jumps) lift((t[i] + t[i - 1]) / 2);
     }
@@ -69,8 +69,8 @@ function upright(u, values) {
   ctx.save();
   ctx.fillStyle = colour("alone", 0.55);
   for (const v of values) {
-    const x = u.valToPos(v, "x", true);
-    if (x >= left && x <= left + width) ctx.fillRect(x - ratio / 2, top, ratio, height);
+    const x = Math.round(u.valToPos(v, "x", true));
+    if (x >= left && x <= left + width) ctx.fillRect(x, top, ratio, height);
   }
   ctx.restore();
 }
