@@ -19,15 +19,13 @@ from gapless.bridges.orders import LOWEST, ORDERS, PAD, STEP, WIDTH, WINDOW, war
 from gapless.simulate import CAR, simulate
 
 IMAGES = Path(__file__).parent / "images"
-PITCH = 1
-"""Channel that is shown: the pitch rate."""
 POINTS = 512
 DECIBEL = 10.0 / np.log(10.0)
 INK, BEFORE, AFTER = "#1f2933", "#d64545", "#0b69a3"
 
 
 def spectra(samples: Any, time: Any, speed: Any, end: float) -> tuple[Any, Any, float]:
-    """Whitened spectra of a window as it is and warped, over hertz, and the mean speed in it."""
+    """Spectra, mean of six channels, of a window as it is and warped, and its mean speed."""
     part = samples[(samples[:, 0] > end - WINDOW - 0.4) & (samples[:, 0] < end + 0.4)]
     inside = (time >= end - WINDOW - 0.2) & (time <= end + 0.2)
     t, v = time[inside], speed[inside]
@@ -35,7 +33,7 @@ def spectra(samples: Any, time: Any, speed: Any, end: float) -> tuple[Any, Any, 
     for course in (np.full(len(v), v.mean()), v):
         x = warp(part, t, course, end - WINDOW, end, POINTS)
         f = np.fft.rfft(x, PAD * POINTS, axis=1)
-        found.append(whiten(np.abs(f) ** 2)[PITCH])
+        found.append(whiten(np.abs(f) ** 2).mean(axis=0))
     return found[0], found[1], float(v[(t >= end - WINDOW)].mean())
 
 
@@ -51,6 +49,7 @@ def panels(path: Path, left: Any, right: Any, titles: tuple[str, str], marks: tu
         for one in at:
             ax.axvline(one, color=INK, alpha=0.25, lw=0.8)
         ax.plot(np.round(x, 3), np.round(DECIBEL * y, 2), color=hue, lw=1.1)
+        ax.set_xlim(x[0], x[-1])
         ax.set_title(title, fontsize=10, loc="left", color=INK)
         ax.set_xlabel(unit)
         ax.spines[["top", "right"]].set_visible(False)
@@ -79,7 +78,7 @@ def main() -> None:
     hertz = np.mean([w[1][: len(over)] for w in windows], axis=0)
     warped = [np.interp(orders * w[3], np.arange(len(w[2])) * WIDTH, w[2]) for w in windows]
     harmonics = np.arange(1, int(orders[-1] * around) + 1) / around
-    one = max(windows, key=lambda w: w[0] if w[3] > 6.0 else 0.0)
+    one = max((w for w in windows if w[0] > 2.0), key=lambda w: w[3])
     top = over / one[3] <= orders[-1]
     panels(
         IMAGES / "wheels-window.svg",
