@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from gapless.exhibits import Exhibit
 from gapless.recording import Array, Columns, Note, Trajectory
 
 
@@ -95,6 +96,8 @@ class Solution:
         Fitted learners of bridges, to be saved.
     start_sd : dict of str to ndarray, shape (k,)
         By block, standard deviations before there were observations, where the first row knows of later ones.
+    exhibits : tuple of Exhibit
+        What bridges heard and how the run rehearsed.
     """
 
     name: str
@@ -109,6 +112,7 @@ class Solution:
     notes: tuple[Note, ...] = field(default=())
     learned: tuple[object, ...] = field(default=())
     start_sd: dict[str, Array] = field(default_factory=dict)
+    exhibits: tuple[Exhibit, ...] = field(default=())
 
     def in_outage(self, time: Array) -> NDArray[np.bool_]:
         """Which times lie in a withheld stretch.

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import ClassVar, NamedTuple, Protocol, Self
 
 from gapless.events import ImuBlock, Motion, Reading
+from gapless.exhibits import Exhibit
 from gapless.inertial.belief import Belief
 from gapless.measurements.base import Observation
 from gapless.solution import Decision
@@ -99,6 +100,15 @@ class Bridge(Protocol):
         Returns
         -------
         tuple of Decision
+        """
+        ...
+
+    def exhibit(self) -> Exhibit | None:
+        """What it has to show besides, for the report; None where that is nothing.
+
+        Returns
+        -------
+        Exhibit or None
         """
         ...
 

@@ -30,6 +30,8 @@ class Comb(NamedTuple):
     ----------
     height : ndarray, shape (6, orders)
         Log power of the comb above what is around it, shrunk by its standard error.
+    error : ndarray, shape (6, orders)
+        That standard error.
     variance : ndarray, shape (6,)
         Of a single spectrum's log power, by channel.
     mean : ndarray, shape (6, BINS)
@@ -39,6 +41,7 @@ class Comb(NamedTuple):
     """
 
     height: Array
+    error: Array
     variance: Array
     mean: Array
     windows: float
@@ -144,7 +147,7 @@ class Memory:
         raw -= moving_mean(moving_mean(raw, TREND), TREND)
         doubt = variance[:, None] / count
         height = raw * np.maximum(0.0, 1.0 - doubt / np.maximum(raw**2, 1e-12))
-        return Comb(np.ascontiguousarray(height), variance, mean, self.windows)
+        return Comb(np.ascontiguousarray(height), np.sqrt(doubt), variance, mean, self.windows)
 
 
 @kernel

@@ -190,6 +190,9 @@ class LearnedBridge:
             for t in self.trainings
         )
 
+    def exhibit(self) -> None:
+        """See `Bridge`."""
+
     def learned(self) -> object | None:
         """See `Bridge`."""
         return None if self.trained is None else self.trained.learner

@@ -17,8 +17,9 @@ import numpy as np
 
 from gapless.bridges.base import Saying
 from gapless.bridges.comb import Comb, Memory
-from gapless.bridges.orders import WINDOW, Spectrum, spectrum
+from gapless.bridges.orders import LOWEST, ORDERS, STEP, WINDOW, Spectrum, spectrum
 from gapless.events import ImuBlock, Motion, Reading
+from gapless.exhibits import Heard, WheelsHeard, fundamental
 from gapless.inertial.belief import Belief
 from gapless.measurements.base import Observation, Sensor
 from gapless.recording import Array
@@ -55,22 +56,6 @@ class Peak(NamedTuple):
 
     off: float
     variance: float
-
-
-class Heard(NamedTuple):
-    """A reading, for the report.
-
-    Parameters
-    ----------
-    time : float
-        [s]
-    speed, sd : float
-        [m/s]
-    """
-
-    time: float
-    speed: float
-    sd: float
 
 
 @dataclass
@@ -162,10 +147,23 @@ class Wheels:
         if self.rate < RATE - 0.5:
             slow = f"the IMU logs {self.rate:.0f} samples a second; {RATE:g} are needed"
             return (Decision("wheels heard", 0, "spectra", "data", slow),)
-        if self.memory is None:
+        shown = self.exhibit()
+        if shown is None:
             return (Decision("wheels heard", 0, "spectra", "data", "no driving fast enough to learn from"),)
+        around = shown.circumference
+        size = f"{around:.2f} m in circumference" if around else "no comb stands out"
         said = f"{len(self.readings)} speeds read in silence, {self.refused} spectra that said too little"
-        return (Decision("wheels heard", round(self.memory.windows), "spectra", "data", said),)
+        return (Decision("wheels heard", round(shown.spectra), "spectra", "data", f"{size}; {said}"),)
+
+    def exhibit(self) -> WheelsHeard | None:
+        """See `Bridge`."""
+        if self.memory is None:
+            return None
+        comb, orders = self.memory.comb(), np.asarray(LOWEST + STEP * np.arange(ORDERS), float)
+        found = fundamental(orders, comb.height, comb.error)
+        return WheelsHeard(
+            self.memory.windows, orders, comb.height, comb.error, *found, self.readings, self.refused
+        )
 
     def learned(self) -> object | None:
         """See `Bridge`."""
@@ -182,8 +180,9 @@ class Wheels:
     def _listen(self, belief: Belief, time: float) -> Spectrum | None:
         """The spectrum of the window that ends now, warped by the inertial course of the speed."""
         rows = self._samples(time - WINDOW - ROOM, time)
-        if len(rows) > 2:
-            self.rate = 1.0 / float(np.median(np.diff(rows[:, 0])))
+        if len(rows) < 3:
+            return None
+        self.rate = 1.0 / float(np.median(np.diff(rows[:, 0])))
         times, gained = belief.trail.behind(WINDOW)
         if len(times) < 10 or times[0] > time - WINDOW or times[-1] < time - 1e-3:
             return None
@@ -228,7 +227,7 @@ class Wheels:
         speed = float(np.linalg.norm(v))
         h = np.zeros((1, belief.layout.n))
         h[0, 3:6] = v / speed
-        self.readings = (*self.readings, Heard(time, speed + peak.off, math.sqrt(r)))
+        self.readings = (*self.readings, Heard(time, speed + peak.off, math.sqrt(r), speed))
         return (Saying("bridge_speed", Observation(np.array([peak.off]), h, np.array([[r]]))),)
 
     def _peak(self, comb: Comb, heard: Spectrum, sd: float) -> Peak | None:

@@ -18,11 +18,13 @@ import numpy as np
 
 from gapless import earth
 from gapless.events import Event, ImuBlock
+from gapless.exhibits import Rehearsals
 from gapless.journal import Journal
 from gapless.manner import Manner
 from gapless.navigator import Navigator
 from gapless.recording import Array, Trajectory
 from gapless.rehearsal.judge import AGES, REFERENCE, Choice, Rehearsed, Trial, choose
+from gapless.rehearsal.shown import shown
 from gapless.settings import Settings
 from gapless.solution import Decision
 
@@ -214,6 +216,15 @@ class Rehearsing:
             for s in (*c.bridges, *c.presets)
         )
         return (who, *([how] if c.presets else []), sure, *told)
+
+    def exhibit(self) -> Rehearsals:
+        """What was rehearsed, for the report.
+
+        Returns
+        -------
+        Rehearsals
+        """
+        return shown(self.history, self.plan.bridges, self.plan.presets, self.plan.length)
 
     # --- acting ---------------------------------------------------------------------------------
 

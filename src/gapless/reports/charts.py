@@ -45,11 +45,25 @@ def charts(solution: Solution, scores: Scores | None) -> list[dict[str, Any]]:
     for name, one in solution.innovations.items():
         if len(one):
             found += _innovation_charts(name, one, solution.start)
-    focus = [(a - _AROUND * (b - a), b + _AROUND * (b - a)) for a, b in solution.outages]
-    return [_decimated(one, focus) for one in found]
+    return [decimated(one, focus(solution)) for one in found]
 
 
-def _chart(
+def focus(solution: Solution) -> list[Stretch]:
+    """Stretches that are shown finer: the outages and what is around them.
+
+    Parameters
+    ----------
+    solution : Solution
+
+    Returns
+    -------
+    list of (float, float)
+        Seconds after the first IMU sample.
+    """
+    return [(a - _AROUND * (b - a), b + _AROUND * (b - a)) for a, b in solution.outages]
+
+
+def chart(
     group: str,
     title: str,
     unit: str,
@@ -58,7 +72,24 @@ def _chart(
     bands: Array | None = None,
     **more: Any,
 ) -> dict[str, Any]:
-    """One chart; `bands` are half widths, shape (n, len(series))."""
+    """One chart, as it is handed to `decimated`.
+
+    Parameters
+    ----------
+    group, title, unit : str
+    time : ndarray, shape (n,)
+        [s]
+    series : sequence of (str, ndarray)
+        Names and values, shape (n,).
+    bands : ndarray, shape (n, len(series)), optional
+        Half widths.
+    **more : object
+        Further entries, see `charts`.
+
+    Returns
+    -------
+    dict
+    """
     return {
         "group": group,
         "title": title,
@@ -73,25 +104,39 @@ def _chart(
     }
 
 
-def _decimated(chart: dict[str, Any], focus: Sequence[Stretch]) -> dict[str, Any]:
-    """A chart with as many rows as are embedded, packed."""
-    time, series, bands = chart["t"], chart["series"], chart.pop("bands")
+def decimated(one: dict[str, Any], finer: Sequence[Stretch]) -> dict[str, Any]:
+    """A chart with as many rows as are embedded, packed.
+
+    Parameters
+    ----------
+    one : dict
+        From `chart`.
+    finer : sequence of (float, float)
+        Stretches that are shown finer [s].
+
+    Returns
+    -------
+    dict
+        See `charts`.
+    """
+    time, series, bands = one["t"], one["series"], one.pop("bands")
     columns = np.column_stack([y for _, y in series])
     table = columns if bands is None else np.column_stack([columns, bands])
-    if chart["dots"]:
+    if one["dots"]:
         rows = scatter(np.abs(columns).max(axis=1))
         t, table = time[rows], table[rows]
     else:
-        t, table = envelope(time, table, POINTS, focus)
+        t, table = envelope(time, table, POINTS, finer)
     drawn: list[dict[str, Any]] = [
         {"name": name, "y": packed(table[:, i])} for i, (name, _) in enumerate(series)
     ]
     if bands is not None:
-        for i, one in enumerate(drawn):
-            one["band"] = packed(table[:, len(series) + i])
+        for i, line in enumerate(drawn):
+            line["band"] = packed(table[:, len(series) + i])
     step = float(np.median(np.diff(time))) if len(time) > 1 else 1.0
     widest = step * max(1.0, 2.0 * len(time) / max(len(t), 1))
-    return chart | {"t": packed_times(t), "series": drawn, "gap": round(max(2.0, 4.0 * widest), 2)}
+    gap = round(max(2.0, 4.0 * widest), 2)
+    return {"gap": gap} | one | {"t": packed_times(t), "series": drawn}
 
 
 def extent(columns: Array, bands: Array | None = None) -> Range:
@@ -115,9 +160,9 @@ def extent(columns: Array, bands: Array | None = None) -> Range:
     room = max(b - a, 1e-12)
     if high - low > 3.0 * room:
         low, high = max(low, a - 0.5 * room), min(high, b + 0.5 * room)
-    if bands is not None and np.isfinite(bands).any():
-        half = np.nanmedian(bands, axis=0)
-        middle = np.nanmedian(columns, axis=0)
+    if bands is not None and (np.isfinite(bands) & np.isfinite(columns)).any():
+        some = np.isfinite(bands).any(axis=0) & np.isfinite(columns).any(axis=0)
+        half, middle = np.nanmedian(bands[:, some], axis=0), np.nanmedian(columns[:, some], axis=0)
         low, high = min(low, float(np.nanmin(middle - half))), max(high, float(np.nanmax(middle + half)))
     pad = 0.06 * (high - low) or 0.5 * abs(high) or 1.0
     return low - pad, high + pad
@@ -133,7 +178,7 @@ def _error_charts(scores: Scores, start: float) -> Iterator[dict[str, Any]]:
         if not np.isfinite(bound).any()
         else max(worst, min(float(np.nanpercentile(bound, 99.0)), 2.0 * worst))
     )
-    yield _chart(
+    yield chart(
         "Errors",
         title,
         "m",
@@ -146,29 +191,27 @@ def _error_charts(scores: Scores, start: float) -> Iterator[dict[str, Any]]:
         "in it 95 % of the time.",
     )
     if np.isfinite(e.along).any():
-        yield _chart(
-            "Errors", "Along and across the course", "m", t, [("along", e.along), ("cross", e.cross)]
-        )
+        yield chart("Errors", "Along and across the course", "m", t, [("along", e.along), ("cross", e.cross)])
     down = -e.position[:, 2] - (scores.height_offset if np.isfinite(scores.height_offset) else 0.0)
-    yield _chart("Errors", "Height error", "m", t, [("up", down)])
+    yield chart("Errors", "Height error", "m", t, [("up", down)])
     if np.isfinite(e.attitude).any():
         names = ("roll", "pitch", "heading")
         series = [(name, e.attitude[:, k] / DEG) for k, name in enumerate(names)]
-        yield _chart("Errors", "Attitude error", "deg", t, series)
+        yield chart("Errors", "Attitude error", "deg", t, series)
     if np.isfinite(e.velocity[:, :2]).any():
         series = [(name, e.velocity[:, k]) for k, name in enumerate(("north", "east"))]
-        yield _chart("Errors", "Velocity error", "m/s", t, series)
+        yield chart("Errors", "Velocity error", "m/s", t, series)
 
 
 def _motion_charts(solution: Solution) -> Iterator[dict[str, Any]]:
     t = solution.trajectory
     time = t.time - solution.start
     speed = np.hypot(t.v_n[:, 0], t.v_n[:, 1])
-    yield _chart("Motion", "Speed", "m/s", time, [("speed", speed)])
+    yield chart("Motion", "Speed", "m/s", time, [("speed", speed)])
     heading = np.where(np.isfinite(t.euler[:, 2]), t.euler[:, 2] / DEG % 360.0, np.nan)
-    yield _chart("Motion", "Heading", "deg", time, [("heading", heading)], range=(0.0, 360.0), wrap=360.0)
+    yield chart("Motion", "Heading", "deg", time, [("heading", heading)], range=(0.0, 360.0), wrap=360.0)
     tilt = [("roll", t.euler[:, 0] / DEG), ("pitch", t.euler[:, 1] / DEG)]
-    yield _chart("Motion", "Roll and pitch", "deg", time, tilt)
+    yield chart("Motion", "Roll and pitch", "deg", time, tilt)
 
 
 def _sd_charts(solution: Solution) -> Iterator[dict[str, Any]]:
@@ -185,7 +228,7 @@ def _sd_charts(solution: Solution) -> Iterator[dict[str, Any]]:
         if len(known):
             limits = (0.8 * float(known.min()), 1.25 * float(known.max()))
             series = [(name, sd[:, k]) for k, name in enumerate(names)]
-            yield _chart("Standard deviations", title, unit, time, series, range=limits, log=True)
+            yield chart("Standard deviations", title, unit, time, series, range=limits, log=True)
 
 
 def _state_chart(solution: Solution, name: str, values: Array) -> dict[str, Any]:
@@ -194,7 +237,7 @@ def _state_chart(solution: Solution, name: str, values: Array) -> dict[str, Any]
     series = [(axis, values[:, k] / shown.scale) for k, axis in enumerate(shown.axes)]
     bands = None if sd is None else sd / shown.scale
     time = solution.trajectory.time - solution.start
-    return _chart("States", shown.label, shown.unit, time, series, bands)
+    return chart("States", shown.label, shown.unit, time, series, bands)
 
 
 def _innovation_charts(name: str, one: Innovations, start: float) -> Iterator[dict[str, Any]]:
@@ -212,4 +255,4 @@ def _innovation_chart(part: Quantity, time: Array, z: Array, sd: Array, factor: 
     typical = float(np.nanmedian(sd)) if np.isfinite(sd).any() else 1.0
     half = 1.1 * max(3.0 * typical, float(np.percentile(used, 99.5)) if len(used) else 0.0)
     series = [(axis, z[:, k]) for k, axis in enumerate(part.axes)]
-    return _chart("Innovations", part.label, part.unit, time, series, sd, range=(-half, half), dots=True)
+    return chart("Innovations", part.label, part.unit, time, series, sd, range=(-half, half), dots=True)

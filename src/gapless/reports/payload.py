@@ -5,7 +5,7 @@ Times are seconds after the first IMU sample, the track is in metres east and no
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 import numpy as np
@@ -14,7 +14,7 @@ from gapless.evaluation import Scores, chi_square_quantile
 from gapless.evaluation.errors import gnss_truth
 from gapless.recording import Array, Recording, Trajectory
 from gapless.reports.background import Feature, east_north, placed
-from gapless.reports.charts import charts
+from gapless.reports.charts import charts, decimated, focus
 from gapless.reports.decimate import POINTS, simplify
 from gapless.reports.pack import rounded
 from gapless.scenarios import Outage, withheld
@@ -32,6 +32,7 @@ def payload(
     recording: Recording | None,
     scores: Scores | None,
     background: Sequence[Feature] = (),
+    exhibits: Iterable[dict[str, Any]] = (),
 ) -> dict[str, Any]:
     """Data of the page's scripts.
 
@@ -43,13 +44,15 @@ def payload(
     scores : Scores, optional
     background : sequence of Feature
         Drawn beneath the track.
+    exhibits : iterable of dict
+        Charts of further sections, from `chart`.
 
     Returns
     -------
     dict
         JSON-able; arrays are lists of rounded numbers, None where unknown.
     """
-    drawn = charts(solution, scores)
+    drawn = [*charts(solution, scores), *(decimated(one, focus(solution)) for one in exhibits)]
     end = float(solution.trajectory.time[-1]) - solution.start
     return {
         "span": [rounded(solution.trajectory.time[:1] - solution.start, 2)[0], round(end, 2)],

@@ -8,7 +8,7 @@ from typing import Any
 
 from gapless.evaluation import Scores
 from gapless.recording import Recording
-from gapless.reports import tables
+from gapless.reports import rehearsals, tables, wheels
 from gapless.reports.background import Feature
 from gapless.reports.numbers import distance, duration, known
 from gapless.reports.page import Content, fill, render, section
@@ -18,6 +18,8 @@ from gapless.solution import Solution
 
 _SECTIONS = (
     ("outages", "Outages", tables.outages),
+    ("wheels", "Wheels", wheels.text),
+    ("rehearsals", "Rehearsals", rehearsals.text),
     ("decisions", "Decisions", tables.decisions),
     ("innovations", "Innovations", tables.innovations),
     ("states", "States at the end", tables.states),
@@ -75,13 +77,15 @@ def page(
         HTML.
     """
     told = summarise(solution, scores) if summary is None else summary
+    gnss = None if recording is None else recording.gnss
+    exhibits = [*wheels.charts(told, gnss), *rehearsals.charts(told)]
     content = Content(
         name=solution.name,
         kind=solution.system,
         lead=_lead(told),
         tiles=tables.tiles(told),
         body=fill("fuse/body.html", {key: section(key, title, make(told)) for key, title, make in _SECTIONS}),
-        data=payload(solution, recording, scores, background),
+        data=payload(solution, recording, scores, background, exhibits),
         scripts=("fuse/track.js", "fuse/main.js"),
     )
     return render(content)

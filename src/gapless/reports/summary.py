@@ -11,6 +11,7 @@ import numpy as np
 
 from gapless import __version__
 from gapless.evaluation import Scores, consistency
+from gapless.exhibits import Candidate, Rehearsals, WheelsHeard
 from gapless.motion import horizontal_velocity, motion
 from gapless.recording import Trajectory
 from gapless.reports.numbers import known, measured, plain
@@ -34,7 +35,7 @@ def summarise(solution: Solution, scores: Scores | None = None) -> dict[str, Any
     dict
         For `summary.json`: numbers, strings, lists and dicts; None where a number is not known.
         Metres, seconds, m/s; angles in degrees, their keys end in "_deg"; states name their unit.
-        "observability" is in SI units.
+        "observability", "wheels" and "rehearsals" are in SI units; their times are those of the IMU's clock.
     """
     moved = travelled(solution.trajectory)
     return {
@@ -52,6 +53,8 @@ def summarise(solution: Solution, scores: Scores | None = None) -> dict[str, Any
         "innovations": {name: plain(channel_statistics(c)) for name, c in solution.innovations.items()},
         "scores": None if scores is None else _scores(scores),
         "outages": _outages(solution, scores),
+        "wheels": next((_wheels(e) for e in solution.exhibits if isinstance(e, WheelsHeard)), None),
+        "rehearsals": next((_rehearsals(e) for e in solution.exhibits if isinstance(e, Rehearsals)), None),
         "notes": [plain(note) for note in solution.notes],
     }
 
@@ -182,6 +185,47 @@ def _outages(solution: Solution, scores: Scores | None) -> list[dict[str, Any]]:
     if scores is None:
         return [{"start": plain(a), "end": plain(b)} for a, b in solution.outages]
     return [_degrees(one) for one in scores.outages]
+
+
+def _wheels(e: WheelsHeard) -> dict[str, Any]:
+    """Orders as first and step; heights by channel."""
+    columns = zip(*e.readings, strict=True) if e.readings else ((),) * 4
+    return {
+        "spectra": round(e.spectra),
+        "circumference": plain(None if e.circumference is None else round(e.circumference, 3)),
+        "contrast": round(e.contrast, 2),
+        "first_order": plain(e.orders[0]),
+        "order_step": round(float(e.orders[1] - e.orders[0]), 6),
+        "height": plain(np.round(e.height, 3)),
+        "error": plain(np.round(e.error, 3)),
+        "readings": {
+            key: plain(np.round(column, 3))
+            for key, column in zip(("time", "speed", "sd", "own"), columns, strict=True)
+        },
+        "refused": e.refused,
+    }
+
+
+def _rehearsals(e: Rehearsals) -> dict[str, Any]:
+    def name(who: Candidate) -> str:
+        return ", ".join(filter(None, (who.bridge or "nobody", who.preset)))
+
+    return {
+        "length": e.length,
+        "performances": [
+            {
+                "start": round(one.start, 3),
+                "end": round(one.end, 3),
+                "worst": {name(who): round(worst, 2) for who, worst in one.worst},
+            }
+            for one in e.performances
+        ],
+        "standings": [plain(one._asdict()) for one in e.standings],
+        "choices": [
+            {"time": round(c.time, 3), "candidate": name(c.candidate), "scale": round(c.scale, 3)}
+            for c in e.choices
+        ],
+    }
 
 
 def decision_of(entry: Mapping[str, Any]) -> Decision:

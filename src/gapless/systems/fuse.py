@@ -222,6 +222,10 @@ def collect(
         start=recording.start,
         notes=recording.notes,
         learned=tuple(m for bridge in navigator.bridges if (m := bridge.learned()) is not None),
+        exhibits=(
+            *(e for bridge in navigator.bridges if (e := bridge.exhibit()) is not None),
+            *((navigator.exhibit(),) if isinstance(navigator, Rehearsing) else ()),
+        ),
     )
 
 

@@ -8,6 +8,11 @@ let group = null, grid = null;
 for (const spec of data.charts) {
   spec.t = times[spec.t];
   spec.shades = data.outages;
+  if (spec.host) {   // a section of its own; over orders it has a cursor of its own, too
+    if (spec.span) spec.shades = [];
+    new Plot(byId(spec.host), spec, spec.span ? ageClock(() => null, spec.span[1]) : driveClock);
+    continue;
+  }
   if (spec.group !== group) {
     group = spec.group;
     grid = element("div", "", "group");

@@ -42,7 +42,8 @@ function unpackTimes(text) {
 const clockText = t => `${t < 0 ? "−" : ""}${Math.floor(Math.abs(t) / 60)}:${String(Math.floor(Math.abs(t) % 60)).padStart(2, "0")}`;
 const minus = text => text.replace("-", "−");
 function tickLabel(v, step) {
-  const decimals = Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
+  const power = Math.floor(Math.log10(step) + 1e-9), quarters = Math.abs(step / 10 ** power - 2.5) < 1e-6;
+  const decimals = Math.max(0, quarters - power);
   return minus(Math.abs(v) < step / 1e6 ? "0" : v.toFixed(Math.min(decimals, 6)));
 }
 function short(v) {

@@ -61,15 +61,15 @@ class Plot {
         bind: { dblclick: () => () => this.clock.all(), mouseleave: () => null },
       },
       scales: { x: { time: false, range: () => this.clock.range() }, y: { distr: spec.log ? 3 : 1, range: (u, a, b) => this.range(a, b) } },
-      axes: [this.axis({ size: 26, space: 70, values: (u, splits, _, __, step) => splits.map((v, i) => v === null ? "" : tickLabel(v, step) + (i === splits.length - 1 ? " s" : "")) }),
+      axes: [this.axis({ size: 26, space: 70, values: (u, splits, _, __, step) => splits.map((v, i) => v === null ? "" : tickLabel(v, step) + (i === splits.length - 1 ? ` ${spec.unitX || "s"}` : "")) }),
         this.axis({ size: 48, space: 30, values: (u, splits, _, __, step) => splits.map(v => v === null ? "" : spec.log ? String(+v.toPrecision(2)) : tickLabel(v, step)),
           ...(spec.wrap ? { splits: () => [0, 90, 180, 270, 360] } : {}),
           ...(spec.log ? { filter: (u, splits) => splits, splits: (u, _, low, high) => logTicks(low, high) } : {}) })],
       series: [{}, ...spec.series.map((s, k) => this.series(s, k)), ...edges.map(() => ({ width: 0, stroke: "transparent", points: { show: false } }))],
       bands: edges.flatMap(([k, sign], e) => sign > 0 ? [{ series: [n + 1 + e, n + 2 + e], fill: () => colour(spec.dots ? "quiet" : this.hue(k), alpha) }] : []),
       hooks: {
-        drawClear: spec.shades ? [u => shadeStretches(u, spec.shades)] : [],
-        draw: spec.dots ? [u => arrowsBeyond(u, spec)] : [],
+        drawClear: [...(spec.shades ? [u => shadeStretches(u, spec.shades)] : []), ...(spec.marks ? [u => upright(u, spec.marks)] : [])],
+        draw: [...(spec.dots ? [u => arrowsBeyond(u, spec)] : []), ...(spec.strips ? [u => stripsBelow(u, spec)] : [])],
         setSelect: [u => this.selected(u)],
       },
     };

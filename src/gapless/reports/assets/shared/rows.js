@@ -6,7 +6,7 @@ function chartRows(spec) {
   const out = [[], ...columns.map(() => []), ...edges.map(() => [])];
   const lift = x => { out[0].push(x); for (let c = 1; c < out.length; c++) out[c].push(null); };
   for (let i = 0; i < n; i++) {
-    if (i && !dots) {
+    if (i && (!dots || spec.lift)) {
       const jumps = wrap && columns.some(y => y[i] !== null && y[i - 1] !== null && Math.abs(y[i] - y[i - 1]) > wrap / 2);
       if (t[i] - t[i - 1] > gap || jumps) lift((t[i] + t[i - 1]) / 2);
     }
@@ -59,6 +59,30 @@ function shadeStretches(u, stretches) {
   for (const [a, b] of stretches) {
     const x0 = Math.max(left, u.valToPos(a, "x", true)), x1 = Math.min(left + width, u.valToPos(b, "x", true));
     if (x1 > x0) ctx.fillRect(x0, top, x1 - x0, height);
+  }
+  ctx.restore();
+}
+
+// Upright lines at values of the horizontal axis.
+function upright(u, values) {
+  const { ctx } = u, { left, top, width, height } = u.bbox, ratio = devicePixelRatio || 1;
+  ctx.save();
+  ctx.fillStyle = colour("alone", 0.55);
+  for (const v of values) {
+    const x = Math.round(u.valToPos(v, "x", true));
+    if (x >= left && x <= left + width) ctx.fillRect(x, top, ratio, height);
+  }
+  ctx.restore();
+}
+
+// Which of the series holds in which stretch, along the bottom.
+function stripsBelow(u, spec) {
+  const { ctx } = u, { left, top, width, height } = u.bbox, high = 5 * (devicePixelRatio || 1);
+  ctx.save();
+  for (const [a, b, k] of spec.strips) {
+    const x0 = Math.max(left, u.valToPos(a, "x", true)), x1 = Math.min(left + width, u.valToPos(b, "x", true));
+    ctx.fillStyle = colour(spec.series[k].hue || "c" + (k % 7));
+    if (x1 > x0) ctx.fillRect(x0, top + height - high, x1 - x0, high);
   }
   ctx.restore();
 }
