@@ -119,6 +119,12 @@ class Dice:
     def decisions(self, start):
         return ()
 
+    def exhibit(self):
+        return None
+
+    def begin_with(self, other):
+        pass
+
     def learned(self):
         return None
 

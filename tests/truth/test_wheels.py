@@ -83,7 +83,6 @@ def test_wheels_that_are_heard_help(seed, most, system):
     assert found < most
 
 
-@pytest.mark.xfail(strict=True, reason="after a slip the true speed is beyond where the bridge looks")
 def test_slip_does_not_carry_the_filter_off():
     log = car(3, replace(CAR, slips=SLIPS))
     base = worst(driven(log, "constraints"), log)

@@ -19,6 +19,8 @@ TOGETHER: Final = 3.0
 """So many rehearsals count as one independent one; fewer tell nothing."""
 CONFIDENCE: Final = 0.5
 """Standard errors by which a bridge must be better, one-sided."""
+CLEAR: Final = 0.05
+"""Log ratios nearer to zero are ties: the car stood."""
 PRIOR: Final = 5.0
 """Rehearsals without any difference that every candidate is mixed with."""
 SCATTER: Final = 0.5
@@ -80,7 +82,8 @@ class Score(NamedTuple):
     error : float
         Standard error of the mean.
     earned : bool
-        Whether it is better by `CONFIDENCE` of these, in no fewer than `TOGETHER`.
+        Whether it is better by `CONFIDENCE` of these, and clearly better in no fewer than `TOGETHER` and in
+        more than it is clearly worse in: one lucky rehearsal earns nothing.
     """
 
     name: str
@@ -156,7 +159,8 @@ def judged(name: str, ratios: Sequence[float]) -> Score:
     x = np.asarray(ratios)
     squares = float(((x - x.mean()) ** 2).sum()) + PRIOR_SCATTER * SCATTER**2
     error = math.sqrt(squares / (n - 1 + PRIOR_SCATTER) / max(1.0, n / TOGETHER))
-    earned = n >= TOGETHER and float(x.mean()) + CONFIDENCE * error < 0.0
+    won, lost = int((x < -CLEAR).sum()), int((x > CLEAR).sum())
+    earned = won >= TOGETHER and won > lost and float(x.mean()) + CONFIDENCE * error < 0.0
     return Score(name, n, float(x.sum()) / (n + PRIOR), error, earned)
 
 

@@ -29,10 +29,10 @@ def test_a_score_worked_out_by_hand():
     assert judged("wheels", []).text == "not rehearsed yet"
 
 
-def test_the_gate_is_one_standard_error():
+def test_the_gate_is_half_a_standard_error():
     """Three alike: sqrt(0.5 / 4) = 0.354."""
-    assert not judged("a", [-0.353] * 3).earned
-    assert judged("a", [-0.354] * 3).earned
+    assert not judged("a", [-0.176] * 3).earned
+    assert judged("a", [-0.178] * 3).earned
     assert not judged("a", [0.354] * 3).earned
 
 
@@ -50,9 +50,12 @@ def test_one_lucky_rehearsal_is_not_enough(luck, others):
 
 
 def test_errors_of_centimetres_are_alike():
-    assert choose(history(*[(1.9, 0.01)] * 9), ["wheels"], ()).bridges[0].mean == 0.0
-    few, many = (choose(history(*[(4.0, x)] * 9), ["wheels"], ()).bridges[0].mean for x in (2.0, 0.1))
-    assert few == many == pytest.approx(9.0 * math.log(0.5) / 14.0)
+    """Both have the track's own 2 m an axis in them."""
+    told = choose(history(*[(0.3, 0.01)] * 9), ["wheels"], ()).bridges[0]
+    assert -0.05 < told.mean < 0.0
+    assert not told.earned
+    four = choose(history(*[(4.0, 2.0)] * 9), ["wheels"], ()).bridges[0].mean
+    assert four == pytest.approx(9.0 * 0.5 * math.log((2.0**2 + 8.0) / (4.0**2 + 8.0)) / 14.0)
 
 
 def test_the_best_of_those_that_have_earned_it():
@@ -75,7 +78,7 @@ def test_a_preset_is_held_against_the_same_bridge_without_it():
     told = [Rehearsed(20.0 * k, 20.0 * k + 60.0, trials) for k in range(6)]
     choice = choose(told, ["wheels"], ["loose"])
     assert choice[:2] == ("wheels", "")
-    assert choice.presets[0].mean == pytest.approx(6.0 * math.log(1.2) / 11.0)
+    assert choice.presets[0].mean == pytest.approx(6.0 * 0.5 * math.log((36.0 + 8.0) / (25.0 + 8.0)) / 11.0)
     alone = [Rehearsed(r.start, r.end, (r.trials[0], r.trials[2])) for r in told]
     assert choose(alone, ["wheels"], ["loose"]).presets[0].trials == 0
 
