@@ -39,6 +39,7 @@ bench: $(VENV)/.dev  ## speed as ratios: the kernel and the whole process agains
 	$(BIN)/python benchmarks/denoise.py
 	$(BIN)/python benchmarks/learners.py --genetic
 	$(BIN)/python benchmarks/bridges.py
+	$(BIN)/python benchmarks/wheels.py
 
 docs: $(VENV)/.dev  ## run the README's code again; its output, picture and tables follow
 	$(BIN)/python docs/refresh.py

@@ -75,6 +75,16 @@ class Bridge(Protocol):
         """
         ...
 
+    def begin_with(self, other: Self) -> None:
+        """Know from the start what another has learned of the same drive: for post-processing only.
+
+        Parameters
+        ----------
+        other : Bridge
+            Of the same kind.
+        """
+        ...
+
     def lost(self) -> None:
         """The IMU was silent: what went before does not lead up to what follows."""
         ...

@@ -87,6 +87,8 @@ class ErrorModel:
                 course = self._course(epochs[i - min(run, need) : i], known[i - min(run, need) : i])
                 rows.append(self.row(course, epoch))
                 targets.append(known[i])
+        if not rows:
+            return np.zeros((0, 1)), np.zeros((0, 1))
         x, y = np.array(rows).reshape(len(rows), -1), np.array(targets).reshape(len(rows), -1)
         good = np.isfinite(x).all(axis=1) & np.isfinite(y).all(axis=1)
         return x[good], y[good]

@@ -64,6 +64,8 @@ class IncrementModel:
                 way = earth.lla_to_ned(epoch.fix, before.fix)[: self.axes]
                 rows.append(features(self.features, epoch))
                 targets.append(way / epoch.dt)
+        if not rows:
+            return np.zeros((0, 1)), np.zeros((0, 1))
         x, y = np.array(rows).reshape(len(rows), -1), np.array(targets).reshape(len(rows), -1)
         good = np.isfinite(x).all(axis=1) & np.isfinite(y).all(axis=1)
         return x[good], y[good]

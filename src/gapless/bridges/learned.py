@@ -175,6 +175,9 @@ class LearnedBridge:
             return ()
         return self._speak(belief, motion.time)
 
+    def begin_with(self, other: Self) -> None:
+        """See `Bridge`: what it learns is of its time, so there is nothing to take over."""
+
     def lost(self) -> None:
         """See `Bridge`."""
         self.before = self.fix_time = self.spoke = self.shadow.began = math.nan

@@ -37,6 +37,8 @@ NEAR: Final = 0.6
 """Half width of a peak [m/s]."""
 RATE: Final = 25.0
 """A slower IMU hears no wheels [Hz]."""
+CRAWL: Final = 0.5
+"""Time is not warped to slower speeds [m/s]."""
 ROOM: Final = 0.4
 """Samples and velocities are kept for so much longer than a window [s]."""
 
@@ -103,6 +105,7 @@ class Wheels:
     felt: list[ImuBlock] = field(default_factory=list, init=False)
     memory: Memory | None = field(default=None, init=False)
     comb: Comb | None = field(default=None, init=False)
+    rate: float = field(default=math.nan, init=False)
     fixed: float = field(default=-math.inf, init=False)
     due: float = field(default=-math.inf, init=False)
     readings: tuple[Heard, ...] = field(default=(), init=False)
@@ -131,15 +134,22 @@ class Wheels:
         self._learn(belief, heard)
         return ()
 
+    def begin_with(self, other: Self) -> None:
+        """See `Bridge`: a car's wheels are the same all day."""
+        self.memory, self.comb = other.memory, None
+
     def lost(self) -> None:
         """See `Bridge`."""
         self.felt = []
 
     def decisions(self, start: float) -> tuple[Decision, ...]:
         """See `Bridge`."""
+        if self.rate < RATE - 0.5:
+            slow = f"the IMU logs {self.rate:.0f} samples a second; {RATE:g} are needed"
+            return (Decision("wheels heard", 0, "spectra", "data", slow),)
         shown = self.exhibit()
         if shown is None:
-            return ()
+            return (Decision("wheels heard", 0, "spectra", "data", "no driving fast enough to learn from"),)
         around = shown.circumference
         size = f"{around:.2f} m in circumference" if around else "no comb stands out"
         said = f"{len(self.readings)} speeds read in silence, {self.refused} spectra that said too little"
@@ -169,28 +179,29 @@ class Wheels:
 
     def _listen(self, belief: Belief, time: float) -> Spectrum | None:
         """The spectrum of the window that ends now, warped by the inertial course of the speed."""
-        rows = self._samples(time - WINDOW - ROOM)
+        rows = self._samples(time - WINDOW - ROOM, time)
+        if len(rows) < 3:
+            return None
+        self.rate = 1.0 / float(np.median(np.diff(rows[:, 0])))
         times, gained = belief.trail.behind(WINDOW)
         if len(times) < 10 or times[0] > time - WINDOW or times[-1] < time - 1e-3:
             return None
         speeds = np.linalg.norm(belief.estimate()[3:6] + gained, axis=1)
-        if speeds.min() < 0.5:
+        if speeds.min() < CRAWL:
             return None
         gaps = np.diff(rows[:, 0])
-        if len(rows) < WINDOW * RATE or gaps.max() > 0.2 or rows[0, 0] > time - WINDOW:
+        if self.rate < RATE - 0.5 or gaps.max() > 0.2 or rows[0, 0] > time - WINDOW:
             return None
-        rate = 1.0 / float(np.median(gaps))
-        if rate < RATE - 0.5:
-            return None
-        return spectrum(rows, times, speeds, time, 0.5 * rate - 3.0)
+        return spectrum(rows, times, speeds, time, 0.5 * self.rate - 3.0)
 
-    def _samples(self, begin: float) -> Array:
-        """Time, rates and forces of each sample since a time; older ones are forgotten."""
+    def _samples(self, begin: float, end: float) -> Array:
+        """Time, rates and forces of each sample between two times; older ones are forgotten."""
         while self.felt and self.felt[0].time[-1] < begin:
             self.felt.pop(0)
         if not self.felt:
             return np.zeros((0, 7))
         block = ImuBlock.join(self.felt)
+        block = block.rows(0, int(np.searchsorted(block.time, end, side="right")))  # felt goes ahead
         dt = block.dt[:, None]
         rows = np.column_stack([block.time - 0.5 * block.dt, block.dtheta / dt, block.dvel / dt])
         return rows[np.searchsorted(rows[:, 0], begin) :]

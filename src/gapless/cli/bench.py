@@ -20,11 +20,11 @@ if TYPE_CHECKING:
 @click.argument("recordings", nargs=-1, type=click.Path(path_type=Path), metavar="[RECORDING]...")
 @click.option(
     "--systems",
-    default="ins,constraints",
+    default="ins,constraints,auto",
     show_default=True,
     metavar="NAMES",
-    help="Built-in recipes (ins, constraints), smoothed (not causal: a bound), or TOML files of your own; "
-    "the others are compared with the first.",
+    help="Built-in recipes (ins, auto), smoothed or smoothed+wheels (not causal: a bound), or TOML files of "
+    "your own; the others are compared with the first.",
 )
 @click.option(
     "--length", default="10,30,60,120", show_default=True, metavar="SECONDS", help="Lengths of the outages."
@@ -155,13 +155,17 @@ def _sources(
 
 
 def _methods(systems: str) -> Sequence[Method]:
+    return tuple(_method(name.strip()) for name in systems.split(","))
+
+
+def _method(name: str) -> Method:
     from gapless.laboratory.recipes import Recipe, smoothed
     from gapless.systems.adjust import named
 
-    names = [name.strip() for name in systems.split(",")]
-    return tuple(
-        smoothed(named("constraints")) if name == "smoothed" else Recipe(named(name)) for name in names
-    )
+    first, _, behind = name.partition("+")
+    if first == "smoothed":
+        return smoothed(named(behind or "constraints"), name)
+    return Recipe(named(name))
 
 
 def _scenarios(

@@ -32,7 +32,7 @@ _OUTAGE = (
 _RECIPE = (
     click.option(
         "--system", metavar="NAME",
-        help="Built-in recipe (`gapless systems` lists them; constraints is the one used), perhaps with "
+        help="Built-in recipe (`gapless systems` lists them; auto is the one used), perhaps with "
         "-PART, +constraints or +calibrated behind it: wang2018-bridge.",
     ),
     click.option(
@@ -160,7 +160,7 @@ def _system(name: str | None, config: Path | None, without: Sequence[str], clock
 
     if name is not None and config is not None:
         raise ConfigError("--system and --config both name a recipe; give one of them")
-    recipe = named(str(config) if config is not None else name or "constraints")
+    recipe = named(str(config) if config is not None else name or "auto")
     recipe = left_out(recipe, *without)
     for text in clock:
         channel, _, value = text.partition("=")

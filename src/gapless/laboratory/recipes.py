@@ -157,12 +157,14 @@ class Recipe:
         return decided
 
 
-def smoothed(system: System) -> Function:
+def smoothed(system: System, name: str = "smoothed") -> Function:
     """The bound that no real-time system passes: a recipe's filter, corrected by all that came later.
 
     Parameters
     ----------
     system : System
+    name : str
+        What tables call it.
 
     Returns
     -------
@@ -170,7 +172,7 @@ def smoothed(system: System) -> Function:
         Declared not causal, with a run for each isolated outage.
     """
     what = f"{system.name}, then smoothed over the whole recording: not a real-time result"
-    return Function("smoothed", what, False, partial(_smooth, system))
+    return Function(name, what, False, partial(_smooth, system))
 
 
 def _smooth(system: System, recording: Recording, outages: tuple[Outage, ...]) -> Solution:

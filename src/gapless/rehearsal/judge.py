@@ -1,8 +1,8 @@
 """The judge: from rehearsed outages to who may speak, how the filter is tuned, and how sure it is.
 
 Rehearsals lie closer together than they last, and a drive's minutes resemble each other: three count as
-one. Ratios are logarithms of the largest error against the same outage without, errors below `FLOOR`
-counting as that: nobody is judged on centimetres.
+one. Ratios are logarithms of the largest error against the same outage without, both with the error of
+the track that they are held against: nobody is judged on centimetres.
 """
 
 from __future__ import annotations
@@ -13,11 +13,11 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-FLOOR: Final = 2.0
-"""Largest errors below this are alike [m]."""
+REFERENCE: Final = 2.0
+"""Standard deviation of the aided track, by axis: errors that fixes share [m]."""
 TOGETHER: Final = 3.0
-"""So many rehearsals count as one independent one."""
-CONFIDENCE: Final = 1.0
+"""So many rehearsals count as one independent one; fewer tell nothing."""
+CONFIDENCE: Final = 0.5
 """Standard errors by which a bridge must be better, one-sided."""
 PRIOR: Final = 5.0
 """Rehearsals without any difference that every candidate is mixed with."""
@@ -80,7 +80,7 @@ class Score(NamedTuple):
     error : float
         Standard error of the mean.
     earned : bool
-        Whether it is better by `CONFIDENCE` of these.
+        Whether it is better by `CONFIDENCE` of these, in no fewer than `TOGETHER`.
     """
 
     name: str
@@ -156,7 +156,8 @@ def judged(name: str, ratios: Sequence[float]) -> Score:
     x = np.asarray(ratios)
     squares = float(((x - x.mean()) ** 2).sum()) + PRIOR_SCATTER * SCATTER**2
     error = math.sqrt(squares / (n - 1 + PRIOR_SCATTER) / max(1.0, n / TOGETHER))
-    return Score(name, n, float(x.sum()) / (n + PRIOR), error, float(x.mean()) + CONFIDENCE * error < 0.0)
+    earned = n >= TOGETHER and float(x.mean()) + CONFIDENCE * error < 0.0
+    return Score(name, n, float(x.sum()) / (n + PRIOR), error, earned)
 
 
 def best(scores: Sequence[Score]) -> str:
@@ -200,7 +201,8 @@ def calibrated(history: Sequence[Rehearsed], bridge: str, preset: str) -> float:
 
 
 def _log_ratio(a: Trial, b: Trial) -> float:
-    return math.log(max(a.worst, FLOOR) / max(b.worst, FLOOR))
+    known = math.sqrt(2.0) * REFERENCE
+    return math.log(math.hypot(a.worst, known) / math.hypot(b.worst, known))
 
 
 def _against_nobody(one: Rehearsed, name: str) -> list[float]:

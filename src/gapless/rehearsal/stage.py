@@ -23,15 +23,17 @@ from gapless.journal import Journal
 from gapless.manner import Manner
 from gapless.navigator import Navigator
 from gapless.recording import Array, Trajectory
-from gapless.rehearsal.judge import AGES, Choice, Rehearsed, Trial, choose
+from gapless.rehearsal.judge import AGES, REFERENCE, Choice, Rehearsed, Trial, choose
 from gapless.rehearsal.shown import shown
 from gapless.settings import Settings
 from gapless.solution import Decision
 
 SETTLE: Final = 30.0
 """After its alignment a navigator is left alone for so long [s]."""
-REFERENCE: Final = 2.0
-"""Standard deviation of the aided track, by axis: errors that fixes share [m]."""
+
+
+RESERVE: Final = 10
+"""Candidates that may be tried on credit, so that there is a choice early in a drive."""
 
 
 @dataclass(frozen=True)
@@ -47,14 +49,14 @@ class Plan:
     every, length : float
         A rehearsal begins so often, and lasts so long [s].
     budget : float
-        Samples that may be replayed for each sample that comes in.
+        Samples that may be replayed for each sample that comes in, besides `RESERVE`.
     """
 
     bridges: Mapping[str, tuple[int, ...]]
     presets: Mapping[str, Manner] = field(default_factory=dict)
     every: float = 20.0
     length: float = 60.0
-    budget: float = 12.0
+    budget: float = 2.0
 
 
 @dataclass
@@ -123,6 +125,11 @@ class Rehearsing:
         """The navigator's bridges as they are now."""
         return list(self.navigator.bridges)
 
+    @property
+    def manner(self) -> Manner:
+        """How the next outage is met."""
+        return self._manner(self.choice.bridge, self.choice.preset, self.choice.scale)
+
     def step(self, event: Event) -> None:
         """Take in one event; see `Navigator.step`.
 
@@ -158,7 +165,7 @@ class Rehearsing:
         """
         opened = [o.copy() for o in self.open]
         told = self.history, self.choice, self.chosen
-        return self.navigator.snapshot(), opened, told, self.due, self.credit, self.seen
+        return self.navigator.snapshot(), opened, told, self.due, self.credit
 
     def restore(self, snapshot: Any) -> None:
         """Go back to a snapshot.
@@ -167,9 +174,10 @@ class Rehearsing:
         ----------
         snapshot : object
         """
-        kept, opened, told, self.due, self.credit, self.seen = snapshot
+        kept, opened, told, self.due, self.credit = snapshot
         self.history, self.choice, self.chosen = told
         self.navigator.restore(kept)
+        self.seen = len(self.journal.times)
         self.open = [o.copy() for o in opened]
 
     def fork(self) -> Self:
@@ -254,6 +262,10 @@ class Rehearsing:
         if not one.aided or len(one.track) < 10:
             return
         cost, events, trials = one.samples, one.script(), list[Trial]()
+        if not self.history:
+            self.credit = max(self.credit, RESERVE * cost)
+        if self.credit < cost * (1 + len(self.plan.bridges)):
+            return
         for bridge, preset in self._order():
             if trials and self.credit < cost:
                 break
@@ -282,7 +294,7 @@ class Rehearsing:
         return Trial(bridge, preset, *_apart(navigator.journal.trajectory(), np.array(one.track), one.start))
 
     def _adopt(self) -> None:
-        self.navigator.adopt(self._manner(self.choice.bridge, self.choice.preset, self.choice.scale))
+        self.navigator.adopt(self.manner)
 
     def _manner(self, bridge: str, preset: str, scale: float) -> Manner:
         tuned = self.plan.presets[preset] if preset else self.settings.manner

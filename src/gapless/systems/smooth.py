@@ -2,27 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
 
 from gapless.errors import ConfigError
-from gapless.feed import in_order, merged
+from gapless.feed import events, in_order, merged
 from gapless.filters.adaptation.registry import KINDS, bends_gain
 from gapless.filters.smoother import Adjoint, Correction
 from gapless.inertial.belief import inject
 from gapless.journal import Journal
 from gapless.navigator import Navigator, Settings
 from gapless.recording import Recording
+from gapless.rehearsal.stage import Rehearsing
 from gapless.scenarios import Outage
 from gapless.solution import Decision, Solution, first_deviations
 from gapless.systems.adjust import graded
 from gapless.systems.build import stamps
-from gapless.systems.conduct import settings_for
+from gapless.systems.conduct import Folding, navigator_for, settings_for
 from gapless.systems.decide import decide
-from gapless.systems.fuse import Progress, collect, withhold_from
+from gapless.systems.fuse import Progress, collect, fold, withhold_from
 from gapless.systems.prepare import prepared
 from gapless.systems.recipe import System
 from gapless.tape import Row, Tape
@@ -79,6 +80,8 @@ def smooth(
     decided = decide(open_sky, system)
     built = settings_for(open_sky, system, decided, rate)
     navigator = Navigator(_on_ticks(built))
+    first = navigator_for(open_sky, system, decided, rate)
+    _prepare(navigator, first, open_sky, stamps(system, decided.offsets))
     held = in_order(open_sky, stamps(system, decided.offsets))
     cuts = [-np.inf, *np.arange(recording.start + SEGMENT, recording.imu.time[-1], SEGMENT), np.inf]
     parts = list(pairwise(cuts))
@@ -100,6 +103,17 @@ def smooth(
         if progress is not None and np.isfinite(begin):
             progress(recording.duration - 0.5 * (begin - recording.start))
     return _smoothed(forward, rows, navigator)
+
+
+def _prepare(navigator: Navigator, first: Folding, open_sky: Recording, offsets: Mapping[str, float]) -> None:
+    """Go through the recording once to know who may speak, and what bridges will have learned."""
+    if not first.bridges:
+        return
+    fold(first, events(open_sky, offsets), open_sky.start)
+    for bridge, taught in zip(navigator.bridges, first.bridges, strict=True):
+        bridge.begin_with(taught)
+    if isinstance(first, Rehearsing):
+        navigator.adopt(first.manner)
 
 
 def _optimal(system: System) -> None:

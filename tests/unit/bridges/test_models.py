@@ -116,3 +116,15 @@ def test_an_increment_over_a_gap_is_not_learned():
     epochs[9] = epochs[9]._replace(dt=np.nan)
     assert len(IncrementModel(("force",), 2, Position()).pairs(epochs)[0]) == 18
     assert (epochs[0].fix != ORIGIN).any()
+
+
+@pytest.mark.parametrize(
+    "model",
+    [
+        ErrorModel(("velocity",), 1, 0, "gnss", ("position",), 2),
+        IncrementModel(("velocity",), 2, Position(np.zeros(3))),
+    ],
+)
+def test_nothing_to_learn_from_is_no_rows(model):
+    """An outage may begin before a calibration has anything older to train on."""
+    assert [len(part) for part in model.pairs([])] == [0, 0]

@@ -24,6 +24,8 @@ MOUNTING = (np.zeros(2), np.full(2, 0.01))
 class _Listener:
     """A bridge that says nothing and keeps a shadow."""
 
+    reach = 0.0
+
     def __init__(self, start):
         self.start, self.shadow, self.apart = start, Shadow(), []
 
