@@ -41,8 +41,9 @@ def test_performances_and_standings():
         (Candidate(t.bridge, t.preset), t.worst) for t in history(9, 0.5)[3].trials
     )
     (one,) = told.standings
-    # nine log ratios of ln 0.5 and five zeros
-    assert one.ratio == pytest.approx(0.5 ** (9.0 / 14.0), rel=1e-12)
+    (score,) = choose(history(9, 0.5), BRIDGES, ()).bridges
+    assert one.ratio == pytest.approx(math.exp(score.mean), rel=1e-12)
+    assert one.high == pytest.approx(math.exp(score.mean + score.error), rel=1e-12)
     assert one.low < one.ratio < one.high
     assert one.low * one.high == pytest.approx(one.ratio**2, rel=1e-12)
 
