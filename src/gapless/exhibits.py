@@ -168,7 +168,9 @@ def fundamental(orders: Array, height: Array, error: Array) -> tuple[float | Non
 
     Evidence at an order is the mean over channels of height / error. A fundamental's is the mean at its
     harmonics less the mean over all orders, in standard errors of such a mean. Half the true one has
-    twice the harmonics, half of them empty; twice the true one leaves half of them out: both count for less.
+    twice the harmonics, half of them empty; twice the true one leaves half of them out: both count for
+    less. Where every other line is weak, or lines are few, they cannot be told apart for sure: a lorry's
+    wheel may then pass for half of it.
 
     Parameters
     ----------

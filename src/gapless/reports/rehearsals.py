@@ -54,7 +54,8 @@ def text(summary: Mapping[str, Any]) -> str:
     ]
     made = table("Candidates", [*head, "Good enough"], rows)
     note = (
-        "Ratios are of the largest errors in the same outage, their geometric mean drawn towards 1 as if "
+        "Ratios are of the largest errors in the same outage, both with the error of the track that they are "
+        "held against, their geometric mean drawn towards 1 as if "
         "there had been a few rehearsals more without any difference."
     )
     return f'<p>{" ".join(words)}</p><div class="group" id="{HOST}"></div>{made}<p>{note}</p>'

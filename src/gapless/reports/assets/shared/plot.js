@@ -68,7 +68,8 @@ class Plot {
       series: [{}, ...spec.series.map((s, k) => this.series(s, k)), ...edges.map(() => ({ width: 0, stroke: "transparent", points: { show: false } }))],
       bands: edges.flatMap(([k, sign], e) => sign > 0 ? [{ series: [n + 1 + e, n + 2 + e], fill: () => colour(spec.dots ? "quiet" : this.hue(k), alpha) }] : []),
       hooks: {
-        drawClear: [...(spec.shades ? [u => shadeStretches(u, spec.shades)] : []), ...(spec.marks ? [u => upright(u, spec.marks)] : [])],
+        drawClear: spec.shades ? [u => shadeStretches(u, spec.shades)] : [],
+        drawAxes: spec.marks ? [u => upright(u, spec.marks)] : [],
         draw: [...(spec.dots ? [u => arrowsBeyond(u, spec)] : []), ...(spec.strips ? [u => stripsBelow(u, spec)] : [])],
         setSelect: [u => this.selected(u)],
       },
