@@ -32,7 +32,7 @@ def listened(log):
     for event in events(open_sky, {}):
         navigator.step(event)
     (bridge,) = navigator.bridges
-    time, speed, sd = np.array(bridge.readings).reshape(-1, 3).T
+    time, speed, sd, _ = np.array(bridge.readings).reshape(-1, 4).T
     truth = log.reference
     true = np.interp(time, truth.time, np.linalg.norm(truth.v_n, axis=1))
     return speed - true, true, sd, bridge.refused
