@@ -60,7 +60,7 @@ def assimilate(
     journal.innovation(channel, time, o.z, s, nis, _factor(verdict.r, o.R))
     _process(state, settings, verdict)
     if verdict.widen:
-        b.widen(o.H, o.z * math.sqrt(verdict.widen))
+        b.widen(o.H, o.z)
         if channel == "velocity" and time - state.heard.get("bridge", -math.inf) < MISLED:
             b.doubt(float(np.hypot(*o.z[:2])), settings.ceiling)
     r = verdict.r

@@ -206,7 +206,7 @@ def test_a_wrong_r_is_found(name, factor):
 
 def test_what_makes_no_sense_is_refused_with_the_reason():
     refused = partial(pytest.raises, ConfigError)
-    with refused(match=r"adaptation\.gnss has 'gates'; choose from gate, relock, opening, chi_square"):
+    with refused(match=r"adaptation\.gnss has 'gates'; choose from gate, relock, chi_square"):
         chain("gnss", ["gates"])
     with refused(match="gate is named twice"):
         chain("gnss", ["gate", "gate"])
@@ -241,7 +241,7 @@ def test_a_chain_says_all_that_its_rules_say():
     assert both.fade == chain("gnss", ["fading"]).judge(told).fade
     said = Chain().judge(told)
     assert said.r is R
-    assert (said.gain, said.fade, said.noise, said.widen) == (1.0, 1.0, None, 0.0)
+    assert (said.gain, said.fade, said.noise, said.widen) == (1.0, 1.0, None, False)
     # the second hears what the first has left
     first = chain("gnss", ["sage_husa"]).judge(told).r
     second = chain("gnss", ["chi_square"]).judge(told.bent(first)).r

@@ -39,8 +39,6 @@ RATE: Final = 25.0
 """A slower IMU hears no wheels [Hz]."""
 CRAWL: Final = 0.5
 """Time is not warped to slower speeds [m/s]."""
-JUMP: Final = 20.0
-"""For so long the speed may jump back by what it jumped: a wheel that slipped will grip again [s]."""
 ROOM: Final = 0.4
 """Samples and velocities are kept for so much longer than a window [s]."""
 
@@ -109,8 +107,6 @@ class Wheels:
     comb: Comb | None = field(default=None, init=False)
     rate: float = field(default=math.nan, init=False)
     fixed: float = field(default=-math.inf, init=False)
-    jump: float = field(default=0.0, init=False)
-    jumped: float = field(default=-math.inf, init=False)
     due: float = field(default=-math.inf, init=False)
     readings: tuple[Heard, ...] = field(default=(), init=False)
     refused: int = field(default=0, init=False)
@@ -221,14 +217,11 @@ class Wheels:
             return ()
         if self.comb is None:
             self.comb = self.memory.comb()
-        back = self.jump * math.exp((self.jumped - time) / JUMP)
-        sd = math.hypot(self.doubt * speed_sd(belief), 0.3, back)
+        sd = math.hypot(self.doubt * speed_sd(belief), 0.3)
         peak = self._peak(self.comb, heard, sd)
         if peak is None:
             self.refused += 1
             return ()
-        if abs(peak.off) > max(2.0 * sd, back):
-            self.jump, self.jumped = abs(peak.off), time
         r = self.inflate * (peak.variance + self.floor**2)
         v = belief.estimate()[3:6]
         speed = float(np.linalg.norm(v))

@@ -245,15 +245,16 @@ class Belief:
         p += (factor - 1.0) * (share[:, None] * p * share)
 
     def widen(self, h: Array, z: Array) -> None:
-        """Admit an error as large as an innovation, in the direction in which position or velocity is seen.
+        """Admit an error as large as an innovation, where a channel looks directly at the state.
 
         Parameters
         ----------
         h : ndarray, shape (m, n)
-            Rows of unit length in position and velocity.
+            Rows of a position or velocity observation: the identity on one block.
         z : ndarray, shape (m,)
             Innovation.
         """
-        p = self.p.reshape(ROW, ROW)[:6, :6]
-        for row, error in zip(h[:, :6], z, strict=True):
-            p += np.outer(row, row) * (error * error)
+        p = self.p.reshape(ROW, ROW)
+        for row, error in zip(h, z, strict=True):
+            i = int(np.argmax(row[:6]))
+            p[i, i] += error * error

@@ -10,7 +10,6 @@ from gapless.filters.adaptation.chi_square import ChiSquare, robust_factor
 from gapless.filters.adaptation.fading import Fading, FadingTable
 from gapless.filters.adaptation.igg3 import Igg3, Igg3Table, weights
 from gapless.filters.adaptation.improved_fading import ImprovedFading, ImprovedFadingTable
-from gapless.filters.adaptation.opening import Opening, OpeningTable
 from gapless.filters.adaptation.sage_husa import SageHusa, SageHusaTable
 from gapless.inertial.belief import Belief
 from gapless.inertial.layout import Layout
@@ -121,25 +120,3 @@ def test_a_faded_covariance_is_s_times_it_up_to_the_ceiling():
     assert np.allclose(np.diag(found)[9:12], ceiling[9:12], rtol=1e-12)
     assert np.array_equal(found[12:, 12:], p[12:, 12:])
     assert np.linalg.eigvalsh(found - p).min() > -1e-9  # what is added is a covariance
-
-
-def scalar(z, hph, r):
-    return told([z], "bridge_speed", r=np.array([[r]]), hph=np.array([[hph]]))
-
-
-def test_opening_leaves_what_is_within_what_is_stated():
-    for z in (0.0, 0.5, -0.7):
-        innovation = scalar(z, 0.3, 0.2)
-        assert Opening().judge(innovation) == (innovation.r, 1.0, 0.0, None, 1.0)
-    two = told([50.0, 50.0])
-    assert Opening().judge(two) == (two.r, 1.0, 0.0, None, 1.0)
-
-
-@pytest.mark.parametrize("z", [0.8, -1.2, 5.0])
-def test_opening_widens_by_what_is_missing_up_to_its_factor(z):
-    """widen * z^2 is what P gains along h: z^2 - S, at most (2^2 - 1) 0.3 + 0.1 = 1.0."""
-    said = Opening().judge(scalar(z, 0.3, 0.2))
-    assert said.widen * z**2 == pytest.approx(min(z**2 - 0.5, 1.0))
-    assert said.r[0, 0] == 0.2
-    tight = Opening(OpeningTable(factor=1.0, least=0.0)).judge(scalar(z, 0.3, 0.2))
-    assert tight.widen == 0.0

@@ -72,8 +72,8 @@ class Verdict(NamedTuple):
         The covariance that counts; None where the observation is rejected.
     gain : float
         Factor on the optimal gain.
-    widen : float
-        Share of z z' that P admits first: the filter is wrong, not the observation.
+    widen : bool
+        Add z z' to P first: the filter is wrong, not the observation.
     noise : float, optional
         Factor on the process noise from now on; None leaves it as it is.
     fade : float
@@ -82,7 +82,7 @@ class Verdict(NamedTuple):
 
     r: Array | None
     gain: float = 1.0
-    widen: float = 0.0
+    widen: bool = False
     noise: float | None = None
     fade: float = 1.0
 

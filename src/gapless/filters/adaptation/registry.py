@@ -13,7 +13,6 @@ from gapless.filters.adaptation.fading import Fading
 from gapless.filters.adaptation.gate import Gate
 from gapless.filters.adaptation.igg3 import Igg3
 from gapless.filters.adaptation.improved_fading import ImprovedFading
-from gapless.filters.adaptation.opening import Opening
 from gapless.filters.adaptation.relock import Relock
 from gapless.filters.adaptation.sage_husa import SageHusa
 from gapless.filters.adaptation.variational import Variational
@@ -21,7 +20,6 @@ from gapless.filters.adaptation.variational import Variational
 RULES: Final[dict[str, type[Rule]]] = {
     "gate": Gate,
     "relock": Relock,
-    "opening": Opening,
     "chi_square": ChiSquare,
     "igg3": Igg3,
     "sage_husa": SageHusa,
@@ -81,7 +79,7 @@ class Chain:
                 return Verdict(said.r, gain, said.widen, noise, fade)
             if said.r is not innovation.r:
                 innovation = innovation.bent(said.r)
-        return Verdict(innovation.r, gain, 0.0, noise, fade)
+        return Verdict(innovation.r, gain, False, noise, fade)
 
     def copy(self) -> Self:
         """An independent chain; see `Adaptation.copy`."""

@@ -88,7 +88,7 @@ class Relock:
                 return Verdict(r)
         self.accepted[channel] = time
         self.runs.pop(channel, None)
-        return Verdict(r, widen=float(doubted))
+        return Verdict(r, widen=doubted)
 
     def _extend(self, channel: str, time: float, z: Array, sd: Array) -> _Run:
         run = self.runs.get(channel)
