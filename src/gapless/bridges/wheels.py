@@ -18,6 +18,7 @@ import numpy as np
 from gapless.bridges.base import Saying
 from gapless.bridges.comb import Comb, Memory
 from gapless.bridges.orders import LOWEST, ORDERS, STEP, WINDOW, Spectrum, spectrum
+from gapless.bridges.vehicle import recalled
 from gapless.events import ImuBlock, Motion, Reading
 from gapless.exhibits import Heard, WheelsHeard, fundamental
 from gapless.inertial.belief import Belief
@@ -88,6 +89,8 @@ class Wheels:
         Speeds farther from the filter's than this are not looked at [m/s].
     patience : float
         Without a fix for so long, GNSS is silent [s].
+    vehicle : str
+        File with what was heard of the car on an earlier drive.
     """
 
     sensors: Mapping[str, Sensor]
@@ -102,6 +105,7 @@ class Wheels:
     mass: float = 0.8
     widest: float = 6.0
     patience: float = 2.5
+    vehicle: str = ""
     felt: list[ImuBlock] = field(default_factory=list, init=False)
     memory: Memory | None = field(default=None, init=False)
     comb: Comb | None = field(default=None, init=False)
@@ -111,6 +115,10 @@ class Wheels:
     readings: tuple[Heard, ...] = field(default=(), init=False)
     refused: int = field(default=0, init=False)
     reach: ClassVar[float] = WINDOW + ROOM
+
+    def __post_init__(self) -> None:
+        if self.vehicle:
+            self.memory = recalled(self.vehicle)
 
     def feel(self, block: ImuBlock) -> None:
         """See `Bridge`."""
@@ -166,8 +174,8 @@ class Wheels:
         )
 
     def learned(self) -> object | None:
-        """See `Bridge`."""
-        return None
+        """See `Bridge`: the memory of this car."""
+        return self.memory
 
     def copy(self) -> Self:
         """See `Bridge`: sums are shared, for they are never changed."""

@@ -56,7 +56,8 @@ def _formats(command: Callable[..., Any]) -> Callable[..., Any]:
     "--save-model",
     type=click.Path(path_type=Path, dir_okay=False),
     metavar="FILE",
-    help="Keep what the bridge learned, for a recipe's learner.model: arrays and JSON, nothing that runs.",
+    help="Keep what the bridge learned, for a recipe's learner.model, or what was heard of the car's wheels, "
+    "for bridge.parameters.vehicle: arrays and JSON, nothing that runs.",
 )
 @click.option("--vehicle", is_flag=True, help="Write the attitude of the car instead of the box's.")
 @_formats
@@ -159,9 +160,12 @@ def _save_model(solution: Solution, path: Path) -> None:
             f"--save-model {path}: no bridge has learned; choose a --system that has one, and let an outage "
             "begin after half a minute of fixes (--outage START:END), or set bridge.train"
         )
+    from gapless.bridges.comb import Memory
+    from gapless.bridges.vehicle import written
     from gapless.learners.saved import dumps
 
-    data = dumps(solution.learned[0])
+    learned = solution.learned[0]
+    data = written(learned) if isinstance(learned, Memory) else dumps(learned)
     with atomic(path) as temporary:
         temporary.write_bytes(data)
     click.echo(f"wrote {path}")
