@@ -247,13 +247,16 @@ class Wheels:
             return None
         ratio = np.exp(self.temper * comb.evidence(heard, speeds[audible]))
         log[audible] = np.log((1.0 - self.deaf) * ratio + self.deaf)
-        posterior = log - 0.5 * ((speeds - heard.speed) / sd) ** 2
+        prior = np.exp(-0.5 * ((speeds - heard.speed) / sd) ** 2)
+        posterior = log + np.log(prior)
         k = int(posterior.argmax())
         if k in (0, len(speeds) - 1) or log[k] < self.evidence or speeds[k] < SLOWEST + 0.1:
             return None
         share = np.exp(posterior - posterior[k])
         near = np.abs(speeds - speeds[k]) < NEAR
-        if share[near].sum() < self.mass * share.sum():
+        everywhere = sd * math.sqrt(2.0 * math.pi) / GRID  # a speed beyond the search has no comb either
+        beyond = max(0.0, everywhere - float(prior.sum())) * math.exp(-posterior[k])
+        if share[near].sum() < self.mass * (share.sum() + beyond):
             return None
         weight = np.exp(log[near] - log[near].max())
         weight /= weight.sum()
