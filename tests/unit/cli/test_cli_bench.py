@@ -38,16 +38,16 @@ def test_the_folder_is_the_contract(bench):
         *("recording", "kind", "protocol", "scenario", "start", "time", "lat", "lon"),
         *("semi_major", "semi_minor", "direction"),
     ]
-    assert set(tracks["kind"].to_pylist()) == {"truth", "ins", "constraints"}
+    assert set(tracks["kind"].to_pylist()) == {"truth", "ins", "constraints", "auto"}
     runs = pq.read_table(folder / "runs.parquet").to_pylist()
-    assert len(runs) == 2 * 2 * 4  # systems, protocols, scenarios
+    assert len(runs) == 3 * 2 * 4  # systems, protocols, scenarios
     assert json.loads(runs[0]["biases"])["gyro_bias"]["unit"]
     assert json.loads(runs[0]["innovations"])["position"]["count"] > 0
     assert json.loads(runs[0]["decisions"])[0]["name"]
     assert runs[0]["rmse_open"] > 0.0
     told = json.loads((folder / "bench.json").read_text())
     assert told["recordings"][0]["name"] == "drive"
-    assert told["prefix"]["constraints"]["drive"].startswith("held in")
+    assert all(told["prefix"][name]["drive"].startswith("held in") for name in ("ins", "constraints", "auto"))
     assert told["arguments"]["length"] == "10,15"
     assert (folder / "tables.txt").read_text().strip() in said
     assert not [p for p in folder.iterdir() if p.name.startswith(".")]

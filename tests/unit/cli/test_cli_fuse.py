@@ -81,7 +81,7 @@ def test_without_leaves_a_constraint_out(shell, drive, tmp_path):
     words = ("--without", "nonholonomic", "--without", "zero_velocity")
     shell("fuse", drive, *words, "--no-report", "--out", tmp_path)
     summary = json.loads((tmp_path / "summary.json").read_text("utf-8"))
-    assert summary["system"] == "constraints without nonholonomic, zero_velocity"
+    assert summary["system"] == "auto without nonholonomic, zero_velocity"
     assert set(summary["innovations"]) == {"position", "velocity"}
 
 
