@@ -46,6 +46,7 @@ def made_of(system: System) -> str:
     str
     """
     from gapless.inertial.layout import EXTRAS, N_CORE
+    from gapless.systems.learning import MODELS
 
     bridge, learner = system.bridge, system.learner
     states = N_CORE + sum(EXTRAS[name] for name in system.filter.states)
@@ -60,6 +61,10 @@ def made_of(system: System) -> str:
         parts.insert(0, f"{system.denoise.method} ({window})")
     if bridge.model == "none":
         return "; ".join([*parts, "no bridge"])
+    if system.rehearsal.every:
+        parts.append(f"rehearsed every {system.rehearsal.every:g} s")
+    if bridge.model not in MODELS:
+        return "; ".join([*parts, bridge.model])
     shown = [*bridge.features, *([f"{bridge.window} past errors"] if bridge.window else [])]
     what = "position increment" if bridge.model == "increment" else f"{' and '.join(bridge.learns)} error"
     rules = " then ".join(system.adaptation.bridge)
