@@ -11,7 +11,7 @@ DEMO := out/demo
 demo: $(VENV)/.run  ## simulate a drive and fuse it through three outages
 	@mkdir -p $(DEMO)
 	@rm -rf $(DEMO)/drive
-	@$(BIN)/gapless simulate --duration 800 --mounting 1 -2 4 --late 0.15 --out $(DEMO)/drive
+	@$(BIN)/gapless simulate --duration 800 --mounting 1 -2 4 --late 0.15 --wheels 1 --out $(DEMO)/drive
 	@echo
 	@$(BIN)/gapless fuse $(DEMO)/drive --outages every=180,length=60,first=240 --out $(DEMO)
 	@echo
