@@ -46,6 +46,9 @@ class Navigator:
         Rows and innovations so far.
     tape : Tape or None
         Where a smoother listens; no part of a snapshot.
+    keeps_learning : bool
+        Whether bridges that are not listened to are asked all the same, and so go on learning; a copy
+        that runs ahead and is thrown away saves their time.
     """
 
     def __init__(self, settings: Settings) -> None:
@@ -63,6 +66,7 @@ class Navigator:
         self._propagate = propagate_points if settings.cubature else at.propagate
         self.dropped = 0
         self.tape: Tape | None = None
+        self.keeps_learning = True
 
     @property
     def belief(self) -> Belief:
@@ -230,8 +234,9 @@ class Navigator:
             state.clock = float(block.time[last - 1])
             return
         if state.bridges and last > first:
+            felt = block.rows(first, last)
             for bridge in state.bridges:
-                bridge.feel(block.rows(first, last))
+                bridge.feel(felt)
         b, often = state.belief, s.row < s.tick
         if state.fade > 1.0:  # the epoch is over
             b.fade(state.fade, s.ceiling)
@@ -289,9 +294,11 @@ class Navigator:
             if self._update(name, motion.time, observation):
                 state.heard[name] = motion.time
         for k, bridge in enumerate(state.bridges):
-            for channel, said in bridge.tick(state.belief, motion):
-                if k in state.manner.voices and self._update(channel, motion.time, said):
-                    state.heard["bridge"] = motion.time
+            heeded = k in state.manner.voices
+            if heeded or self.keeps_learning:
+                for channel, said in bridge.tick(state.belief, motion):
+                    if heeded and self._update(channel, motion.time, said):
+                        state.heard["bridge"] = motion.time
         self._row()
 
     def _row(self) -> None:

@@ -86,7 +86,7 @@ def stretched(comb, factor):
     """A template with its orders multiplied."""
     order = LOWEST + STEP * np.arange(ORDERS)
     height = np.array([np.interp(order / factor, order, h, left=0.0, right=0.0) for h in comb.height])
-    return comb._replace(height=height)
+    return replace(comb, height=height)
 
 
 @cache

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Final, NamedTuple
+from functools import cached_property
+from typing import Final
 
 import numpy as np
 
@@ -23,7 +24,8 @@ SPEED_BIN, SPEED_BINS = 0.5, 140
 """Speeds are counted in so many bins of this width [m/s]."""
 
 
-class Comb(NamedTuple):
+@dataclass(frozen=True, eq=False)
+class Comb:
     """The template of a car.
 
     Parameters
@@ -36,15 +38,22 @@ class Comb(NamedTuple):
         Of a single spectrum's log power, by channel.
     mean : ndarray, shape (6, BINS)
         Mean spectrum over frequency: what stays where it is when the speed changes.
-    windows : float
-        From so many spectra, those long ago counted less.
     """
 
     height: Array
     error: Array
     variance: Array
     mean: Array
-    windows: float
+
+    @cached_property
+    def weight(self) -> Array:
+        """T / s^2, shape (orders, 6)."""
+        return np.ascontiguousarray((self.height / self.variance[:, None]).T)
+
+    @cached_property
+    def cost(self) -> Array:
+        """Sum over channels of T^2 / (2 s^2), shape (orders,)."""
+        return np.asarray(0.5 * (self.weight * self.height.T).sum(axis=1))
 
     def evidence(self, heard: Spectrum, speeds: Array) -> Array:
         """Log likelihood of speeds against that of no comb; see `orders.evidence`.
@@ -60,9 +69,7 @@ class Comb(NamedTuple):
         ndarray, shape (k,)
         """
         left = np.ascontiguousarray((heard.log - self.mean).T)
-        weight = np.ascontiguousarray((self.height / self.variance[:, None]).T)
-        cost = 0.5 * (weight * self.height.T).sum(axis=1)
-        return evidence(left, heard.top, weight, cost, speeds)
+        return evidence(left, heard.top, self.weight, self.cost, speeds)
 
 
 @dataclass
@@ -147,7 +154,7 @@ class Memory:
         raw -= moving_mean(moving_mean(raw, TREND), TREND)
         doubt = variance[:, None] / count
         height = raw * np.maximum(0.0, 1.0 - doubt / np.maximum(raw**2, 1e-12))
-        return Comb(np.ascontiguousarray(height), np.sqrt(doubt), variance, mean, self.windows)
+        return Comb(height, np.sqrt(doubt), variance, mean)
 
 
 @kernel

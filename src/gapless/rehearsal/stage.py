@@ -289,6 +289,7 @@ class Rehearsing:
     def _try(self, one: _Open, events: list[Event], bridge: str, preset: str) -> Trial:
         navigator = one.navigator.fork()
         navigator.adopt(self._manner(bridge, preset, 1.0))
+        navigator.keeps_learning = False
         for event in events:
             navigator.step(event)
         return Trial(bridge, preset, *_apart(navigator.journal.trajectory(), np.array(one.track), one.start))
