@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from copy import copy
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from typing import ClassVar, Final, NamedTuple, Self
 
 import numpy as np
@@ -19,6 +19,7 @@ from gapless.bridges.base import Saying
 from gapless.bridges.comb import Comb, Memory
 from gapless.bridges.orders import LOWEST, ORDERS, STEP, WINDOW, Spectrum, spectrum
 from gapless.bridges.vehicle import recalled
+from gapless.errors import ConfigError
 from gapless.events import ImuBlock, Motion, Reading
 from gapless.exhibits import Heard, WheelsHeard, fundamental
 from gapless.inertial.belief import Belief
@@ -117,6 +118,13 @@ class Wheels:
     reach: ClassVar[float] = WINDOW + ROOM
 
     def __post_init__(self) -> None:
+        for name in (f.name for f in fields(self) if f.init and f.name not in ("sensors", "vehicle")):
+            value, most = getattr(self, name), 1.0 if name in ("deaf", "mass") else math.inf
+            if isinstance(value, bool) or not isinstance(value, int | float) or not 0.0 <= value < most:
+                bound = "from 0 to less than 1" if most == 1.0 else "of 0 or more"
+                raise ConfigError(f"bridge.parameters: {name} is {value!r}; give a number {bound}")
+        if not isinstance(self.vehicle, str):
+            raise ConfigError(f"bridge.parameters: vehicle is {self.vehicle!r}; give the name of a file")
         if self.vehicle:
             self.memory = recalled(self.vehicle)
 

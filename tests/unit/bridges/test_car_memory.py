@@ -64,3 +64,19 @@ def test_a_truncated_or_foreign_file_is_refused(tmp_path, data):
         recalled(str(path))
     with pytest.raises(ConfigError, match="No such file"):
         recalled(str(tmp_path / "nothing.json"))
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [
+        {"temper": "a"},
+        {"floor": -1.0},
+        {"deaf": 1.0},
+        {"widest": float("nan")},
+        {"least": True},
+        {"vehicle": 5},
+    ],
+)
+def test_wrong_parameters_are_refused_by_name(wrong):
+    with pytest.raises(ConfigError, match=f"bridge.parameters: {next(iter(wrong))} is .*give"):
+        Wheels({}, **wrong)
