@@ -8,6 +8,7 @@ from functools import cache
 import numpy as np
 
 from gapless.bridges.comb import Memory
+from gapless.bridges.combs import Combs
 from gapless.bridges.orders import LOWEST, ORDERS, STEP
 from gapless.bridges.wheels import Wheels
 from gapless.evaluation import score
@@ -76,17 +77,22 @@ def injected(memory: Memory, stretch: float = 1.0):
     def finish(setup: Settings) -> Settings:
         bridge = Frozen(setup.sensors)
         bridge.memory = memory
-        bridge.comb = stretched(memory.comb(), stretch)
+        bridge.combs = stretched(Combs.of(memory), stretch)
         return replace(setup, bridges=(bridge,))
 
     return finish
 
 
-def stretched(comb, factor):
-    """A template with its orders multiplied."""
+def stretched(combs, factor):
+    """Templates with their orders multiplied."""
     order = LOWEST + STEP * np.arange(ORDERS)
-    height = np.array([np.interp(order / factor, order, h, left=0.0, right=0.0) for h in comb.height])
-    return replace(comb, height=height)
+
+    def wider(heights):
+        flat = [np.interp(order / factor, order, h, left=0.0, right=0.0) for h in heights.reshape(-1, ORDERS)]
+        return np.reshape(flat, heights.shape)
+
+    common = replace(combs.common, height=wider(combs.common.height))
+    return Combs(common, wider(combs.others))
 
 
 @cache

@@ -22,6 +22,8 @@ SMOOTH: Final = 2
 """Half width of the moving mean over the bins of the mean spectrum."""
 SPEED_BIN, SPEED_BINS = 0.5, 140
 """Speeds are counted in so many bins of this width [m/s]."""
+KNOTS: Final = (5.0, 10.0, 18.0)
+"""Sums are kept apart by speed, each spectrum shared by the two knots around its own [m/s]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,8 +82,8 @@ class Memory:
     ----------
     top : float
         Of the spectra [Hz].
-    total, count, square : ndarray, shape (6, orders), (orders,), (6,)
-        Sums over orders of log power, of spectra, and of squares.
+    total, count, square : ndarray, shape (knots, 6, orders), (knots, orders), (6,)
+        Sums over orders of log power and of spectra, by speed; of squares.
     mean : ndarray, shape (6, BINS)
         Sum over spectra by frequency.
     speeds : ndarray, shape (SPEED_BINS,)
@@ -109,11 +111,11 @@ class Memory:
         -------
         Memory
         """
-        shape = (CHANNELS, ORDERS)
+        shape, by_speed = (CHANNELS, ORDERS), len(KNOTS)
         return cls(
             top,
-            np.zeros(shape),
-            np.zeros(ORDERS),
+            np.zeros((by_speed, *shape)),
+            np.zeros((by_speed, ORDERS)),
             np.zeros(CHANNELS),
             np.zeros((CHANNELS, BINS)),
             np.zeros(SPEED_BINS),
@@ -131,30 +133,119 @@ class Memory:
         Memory
         """
         keep = np.exp(-1.0 / FORGET)
-        total, count, square = self.total * keep, self.count * keep, self.square * keep
-        gather(heard.log, heard.top, heard.speed, total, count, square)
+        new, seen, square = np.zeros((CHANNELS, ORDERS)), np.zeros(ORDERS), self.square * keep
+        gather(heard.log, heard.top, heard.speed, new, seen, square)
+        share = shares(np.array([heard.speed]))[0]
+        total = self.total * keep + share[:, None, None] * new
+        count = self.count * keep + share[:, None] * seen
         speeds = self.speeds * keep
         speeds[min(SPEED_BINS - 1, int(heard.speed / SPEED_BIN))] += 1.0
         mean, windows = self.mean * keep + heard.log, self.windows * keep + 1.0
         return Memory(heard.top, total, count, square, mean, speeds, windows)
 
     def comb(self) -> Comb:
-        """What is left over orders when the mean spectrum and the trend are taken away.
+        """What is left over orders when the mean spectrum and the trend are taken away, at all speeds.
 
         Returns
         -------
         Comb
         """
+        left = self.left()
+        count, raw = left.common()
+        doubt = left.variance[:, None] / count
+        return Comb(shrunk(raw, doubt), np.sqrt(doubt), left.variance, left.mean)
+
+    def left(self) -> Left:
+        """The sums less what the mean spectrum alone would have put there.
+
+        Returns
+        -------
+        Left
+        """
         mean = moving_mean(self.mean / max(self.windows, 1.0), SMOOTH)
-        fixed = unmoved(mean, self.top, self.speeds)
-        count = self.count + DOUBT
-        spread = self.square - (fixed**2 / np.maximum(self.count, 1.0)).sum(axis=1)
-        variance = np.maximum(spread / max(self.count.sum(), 1.0), 0.05)
-        raw = (self.total - fixed) / count
-        raw -= moving_mean(moving_mean(raw, TREND), TREND)
-        doubt = variance[:, None] / count
-        height = raw * np.maximum(0.0, 1.0 - doubt / np.maximum(raw**2, 1e-12))
-        return Comb(height, np.sqrt(doubt), variance, mean)
+        driven = shares(np.asarray(SPEED_BIN * (np.arange(SPEED_BINS) + 0.5), float)).T * self.speeds
+        fixed = np.array([unmoved(mean, self.top, speeds) for speeds in driven])
+        count = self.count.sum(axis=0)
+        spread = self.square - (fixed.sum(axis=0) ** 2 / np.maximum(count, 1.0)).sum(axis=1)
+        variance = np.maximum(spread / max(count.sum(), 1.0), 0.05)
+        return Left(self.total - fixed, self.count, variance, mean)
+
+
+@dataclass(frozen=True, eq=False)
+class Left:
+    """Sums over orders without what does not move with the speed.
+
+    Parameters
+    ----------
+    total : ndarray, shape (knots, 6, orders)
+    count : ndarray, shape (knots, orders)
+    variance : ndarray, shape (6,)
+        Of a single spectrum's log power.
+    mean : ndarray, shape (6, BINS)
+        The mean spectrum.
+    """
+
+    total: Array
+    count: Array
+    variance: Array
+    mean: Array
+
+    def common(self) -> tuple[Array, Array]:
+        """Spectra that count, `DOUBT` among them, and the mean over all speeds without its trend.
+
+        Returns
+        -------
+        count : ndarray, shape (orders,)
+        raw : ndarray, shape (6, orders)
+        """
+        count = self.count.sum(axis=0) + DOUBT
+        return count, without_trend(self.total.sum(axis=0) / count)
+
+
+def shares(speeds: Array) -> Array:
+    """How speeds are shared by the knots: linear between two, the outermost alone beyond the ends.
+
+    Parameters
+    ----------
+    speeds : ndarray, shape (k,)
+        [m/s]
+
+    Returns
+    -------
+    ndarray, shape (k, knots)
+        Sums to one.
+    """
+    return np.array([np.interp(speeds, KNOTS, one) for one in np.eye(len(KNOTS))]).T
+
+
+def shrunk(raw: Array, doubt: Array) -> Array:
+    """What could be chance becomes zero.
+
+    Parameters
+    ----------
+    raw : ndarray
+    doubt : ndarray
+        Its squared standard error.
+
+    Returns
+    -------
+    ndarray
+    """
+    return np.asarray(raw * np.maximum(0.0, 1.0 - doubt / np.maximum(raw**2, 1e-12)))
+
+
+def without_trend(rows: Array) -> Array:
+    """Less the moving mean over `TREND` orders either way, taken twice.
+
+    Parameters
+    ----------
+    rows : ndarray, shape (m, n)
+
+    Returns
+    -------
+    ndarray, shape (m, n)
+    """
+    return np.asarray(rows - moving_mean(moving_mean(rows, TREND), TREND))
 
 
 @kernel

@@ -12,7 +12,7 @@ import numpy as np
 from gapless.bridges.comb import Memory
 from gapless.errors import ConfigError
 
-KIND, VERSION = "gapless wheels", 1
+KIND, VERSION = "gapless wheels", 2
 TRUST: Final = 60.0
 """Spectra that an earlier drive counts for at most: tyres wear, and boxes are moved."""
 LARGEST: Final = 2_000_000

@@ -17,6 +17,7 @@ import numpy as np
 
 from gapless.bridges.base import Saying
 from gapless.bridges.comb import Comb, Memory
+from gapless.bridges.combs import Combs
 from gapless.bridges.orders import LOWEST, ORDERS, STEP, WINDOW, Spectrum, spectrum
 from gapless.bridges.vehicle import recalled
 from gapless.errors import ConfigError
@@ -109,7 +110,7 @@ class Wheels:
     vehicle: str = ""
     felt: list[ImuBlock] = field(default_factory=list, init=False)
     memory: Memory | None = field(default=None, init=False)
-    comb: Comb | None = field(default=None, init=False)
+    combs: Combs | None = field(default=None, init=False)
     rate: float = field(default=math.nan, init=False)
     fixed: float = field(default=-math.inf, init=False)
     due: float = field(default=-math.inf, init=False)
@@ -152,7 +153,7 @@ class Wheels:
 
     def begin_with(self, other: Self) -> None:
         """See `Bridge`: a car's wheels are the same all day."""
-        self.memory, self.comb = other.memory, None
+        self.memory, self.combs = other.memory, None
 
     def lost(self) -> None:
         """See `Bridge`."""
@@ -226,15 +227,15 @@ class Wheels:
         if heard.speed < TAUGHT or speed_sd(belief) > SURE:
             return
         memory = self.memory or Memory.empty(heard.top)
-        self.memory, self.comb = memory.after(heard), None
+        self.memory, self.combs = memory.after(heard), None
 
     def _speak(self, belief: Belief, heard: Spectrum, time: float) -> tuple[Saying, ...]:
         if self.memory is None or self.memory.windows < self.least:
             return ()
-        if self.comb is None:
-            self.comb = self.memory.comb()
+        if self.combs is None:
+            self.combs = Combs.of(self.memory)
         sd = math.hypot(self.doubt * speed_sd(belief), 0.3)
-        peak = self._peak(self.comb, heard, sd)
+        peak = self._peak(self.combs.at(heard.speed), heard, sd)
         if peak is None:
             self.refused += 1
             return ()

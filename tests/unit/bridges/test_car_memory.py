@@ -38,7 +38,7 @@ def test_a_memory_comes_back_with_the_same_comb_but_less_weight(memory, tmp_path
     [
         (lambda held: held.pop("total"), "total"),
         (lambda held: held.update(kind="other"), "another kind"),
-        (lambda held: held.update(version=2), "version 2"),
+        (lambda held: held.update(version=1), "version 1"),
         (lambda held: held.update(speeds=[1.0, 2.0]), "speeds of shape"),
         (lambda held: held.update(windows=float("nan")), "windows is not finite"),
         (lambda held: held.update(windows=-1.0), "windows is negative"),

@@ -71,7 +71,7 @@ def test_a_line_that_does_not_move_with_the_speed_is_no_comb():
     """At speeds that hardly change it stands over an order like a comb's."""
     drive = {"lines": (), "slowest": 9.9, "fastest": 10.4}
     memory = learned(300, tone=13.0, **drive)
-    kept = memory.total / np.maximum(memory.count, 1.0)
+    kept = memory.total.sum(axis=0) / np.maximum(memory.count.sum(axis=0), 1.0)
     at = np.argmin(np.abs(ORDER - 1.28))
     assert kept[:, at].min() > 1.5, "it is in the sums"
     without, left = learned(300, **drive).comb().height, memory.comb().height

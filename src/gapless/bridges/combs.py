@@ -1,0 +1,68 @@
+"""The comb at a speed: what all speeds have in common, and by how much this one is known to differ.
+
+Lines of an engine are where its gear puts them, and a gear is driven at certain speeds; the wheels' own
+grow and fade as they pass resonances of the car. So there is not one comb but one at each speed.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Self
+
+import numpy as np
+
+from gapless.bridges.comb import DOUBT, Comb, Memory, shares, shrunk, without_trend
+from gapless.recording import Array
+
+
+@dataclass(frozen=True, eq=False)
+class Combs:
+    """The combs of a car.
+
+    Parameters
+    ----------
+    common : Comb
+        Of all speeds.
+    others : ndarray, shape (knots, 6, orders)
+        Heights at the knots less the common ones, shrunk by their standard errors.
+    """
+
+    common: Comb
+    others: Array
+
+    @classmethod
+    def of(cls, memory: Memory) -> Self:
+        """What a memory tells.
+
+        Parameters
+        ----------
+        memory : Memory
+
+        Returns
+        -------
+        Combs
+        """
+        left = memory.left()
+        count, raw = left.common()
+        doubt = left.variance[:, None] / count
+        common = Comb(shrunk(raw, doubt), np.sqrt(doubt), left.variance, left.mean)
+        others = np.empty_like(left.total)
+        for k, seen in enumerate(left.count + DOUBT):
+            own = without_trend((left.total[k] + DOUBT * raw) / seen)  # unseen, it is the common one
+            others[k] = shrunk(own - raw, left.variance[:, None] / seen)
+        return cls(common, others)
+
+    def at(self, speed: float) -> Comb:
+        """The comb at a speed.
+
+        Parameters
+        ----------
+        speed : float
+            [m/s]
+
+        Returns
+        -------
+        Comb
+        """
+        here = np.tensordot(shares(np.array([speed]))[0], self.others, axes=1)
+        return Comb(self.common.height + here, self.common.error, self.common.variance, self.common.mean)
