@@ -67,7 +67,7 @@ def said(solution: Solution, name: str) -> tuple[object, str]:
 class Frozen(Wheels):
     """Knows what it was given and learns nothing."""
 
-    def _learn(self, belief, heard):
+    def _learn(self, belief, heard, time):
         pass
 
 

@@ -18,7 +18,9 @@ import numpy as np
 from gapless.bridges.base import Saying
 from gapless.bridges.comb import Comb, Memory
 from gapless.bridges.combs import Combs
+from gapless.bridges.course import Course, Drift
 from gapless.bridges.orders import LOWEST, ORDERS, STEP, WINDOW, Spectrum, spectrum
+from gapless.bridges.slip import Hold
 from gapless.bridges.vehicle import recalled
 from gapless.errors import ConfigError
 from gapless.events import ImuBlock, Motion, Reading
@@ -116,6 +118,9 @@ class Wheels:
     due: float = field(default=-math.inf, init=False)
     readings: tuple[Heard, ...] = field(default=(), init=False)
     refused: int = field(default=0, init=False)
+    drift: Drift = field(default=Drift(), init=False)
+    course: Course | None = field(default=None, init=False)
+    hold: Hold | None = field(default=None, init=False)
     reach: ClassVar[float] = WINDOW + ROOM
 
     def __post_init__(self) -> None:
@@ -148,7 +153,7 @@ class Wheels:
             return ()
         if motion.time - self.fixed > self.patience:
             return self._speak(belief, heard, motion.time)
-        self._learn(belief, heard)
+        self._learn(belief, heard, motion.time)
         return ()
 
     def begin_with(self, other: Self) -> None:
@@ -170,6 +175,8 @@ class Wheels:
         around = shown.circumference
         size = f"{around:.2f} m in circumference" if around else "no comb stands out"
         said = f"{len(self.readings)} speeds read in silence, {self.refused} spectra that said too little"
+        if self.hold is not None:
+            said += f"; slip noticed in {round(self.hold.windows)}"
         return (Decision("wheels heard", round(shown.spectra), "spectra", "data", f"{size}; {said}"),)
 
     def exhibit(self) -> WheelsHeard | None:
@@ -223,29 +230,50 @@ class Wheels:
         rows = np.column_stack([block.time - 0.5 * block.dt, block.dtheta / dt, block.dvel / dt])
         return rows[np.searchsorted(rows[:, 0], begin) :]
 
-    def _learn(self, belief: Belief, heard: Spectrum) -> None:
+    def _learn(self, belief: Belief, heard: Spectrum, time: float) -> None:
         if heard.speed < TAUGHT or speed_sd(belief) > SURE:
             return
         memory = self.memory or Memory.empty(heard.top)
         self.memory, self.combs = memory.after(heard), None
+        v = belief.estimate()[3:6]
+        self.drift = self.drift.after(time, v / np.linalg.norm(v), belief.trail.corrected)
 
     def _speak(self, belief: Belief, heard: Spectrum, time: float) -> tuple[Saying, ...]:
         if self.memory is None or self.memory.windows < self.least:
             return ()
         if self.combs is None:
             self.combs = Combs.of(self.memory)
+        self._follow(belief, time)
         sd = math.hypot(self.doubt * speed_sd(belief), 0.3)
         peak = self._peak(self.combs.at(heard.speed), heard, sd)
         if peak is None:
             self.refused += 1
             return ()
-        r = self.inflate * (peak.variance + self.floor**2)
         v = belief.estimate()[3:6]
         speed = float(np.linalg.norm(v))
+        r = self._doubted(time, peak, speed)
         h = np.zeros((1, belief.layout.n))
         h[0, 3:6] = v / speed
         self.readings = (*self.readings, Heard(time, speed + peak.off, math.sqrt(r), speed))
         return (Saying("bridge_speed", Observation(np.array([peak.off]), h, np.array([[r]]))),)
+
+    def _follow(self, belief: Belief, time: float) -> None:
+        """The inertial course through this silence."""
+        v, corrected = belief.estimate()[3:6], belief.trail.corrected
+        if self.course is None or self.course.begun < self.fixed:
+            before = self.hold.windows if self.hold else 0.0
+            self.course = Course(time, corrected, time)
+            self.hold = Hold.begin(time - self.patience, speed_sd(belief) ** 2, self.drift.rate, before)
+        self.course = self.course.to(time, v / np.linalg.norm(v), corrected)
+
+    def _doubted(self, time: float, peak: Peak, speed: float) -> float:
+        """Variance that a reading counts with, greater where wheels seem to slip [m^2/s^2]."""
+        own = peak.variance + self.floor**2
+        counted = self.inflate * own
+        assert self.hold is not None
+        assert self.course is not None
+        self.hold = self.hold.after(time, peak.off + self.course.gained, own, counted, speed)
+        return counted / self.hold.rolls
 
     def _peak(self, comb: Comb, heard: Spectrum, sd: float) -> Peak | None:
         """The speed that fits, where one does; speeds without a comb have a likelihood ratio of one."""
