@@ -5,7 +5,7 @@ readings less that course hardly change while wheels roll, leap where they spin 
 where they find hold. Two hypotheses, each with what it takes the course to be off by; either lasts. It is a
 switching Kalman filter whose branches are merged by moments after each reading (Bar-Shalom, Li and
 Kirubarajan 2001, *Estimation with Applications to Tracking and Navigation*, ch. 11.6). A filter that is
-wrong for long is told from wheels that slip for long by this: a slip has to go on, second by second.
+wrong is told from wheels that slip for long by this: a slip has to go on, second by second.
 """
 
 from __future__ import annotations
@@ -13,14 +13,16 @@ from __future__ import annotations
 import math
 from typing import Final, NamedTuple, Self
 
-BEGINS: Final = 1.0 / 300.0
+BEGINS: Final = 1.0 / 100.0
 """Rate at which rolling wheels begin to slip [1/s]."""
-ENDS: Final = 1.0 / 5.0
+ENDS: Final = 1.0 / 8.0
 """Rate at which slipping ones find hold again [1/s]."""
 SIZE: Final = 0.1
 """Standard deviation of a slip, as a share of the speed."""
-CHANGES: Final = 0.02
+CHANGES: Final = 0.01
 """By how much a slip changes in a second, as a share of the speed."""
+STRAYS: Final = 0.001
+"""So many of the leaps are the filter's, and stay. What lasts for half a minute is therefore no slip."""
 OFTEN: Final = BEGINS / (BEGINS + ENDS)
 """Share of time in which wheels slip."""
 LEAST: Final = 1e-9
@@ -113,7 +115,7 @@ class Hold(NamedTuple):
         sure = Gauss(0.0, variance)
         return cls(time, drift, sure, sure, windows=windows)
 
-    def after(self, time: float, seen: float, variance: float, counted: float, speed: float) -> Self:
+    def after(self, time: float, seen: float, variance: float, speed: float) -> Self:
         """What is believed after another reading.
 
         Parameters
@@ -124,8 +126,6 @@ class Hold(NamedTuple):
             The reading less the inertial course [m/s].
         variance : float
             Of a reading by itself [m^2/s^2].
-        counted : float
-            What it counts with among others of overlapping windows [m^2/s^2].
         speed : float
             The filter's [m/s].
 
@@ -135,31 +135,27 @@ class Hold(NamedTuple):
         """
         dt = time - self.time
         gained, changed = (self.drift * dt) ** 2, 1.0 - math.exp(-(BEGINS + ENDS) * dt)
-        starts, stops = changed * OFTEN, changed * (1.0 - OFTEN)
-        roll, slip, size = (
-            self.rolling.wider(gained),
-            self.slipping.wider(gained),
-            self.size.wider(CHANGES**2 * dt),
-        )
+        starts, stops = self.rolls * changed * OFTEN, self.slips * changed * (1.0 - OFTEN)
+        roll, slip = self.rolling.wider(gained), self.slipping.wider(gained)
+        size, wide = self.size.wider(CHANGES**2 * dt), (SIZE * speed) ** 2
+        on = Gauss(slip.mean + speed * size.mean, speed**2 * size.variance + gained)
         fits = (
-            (self.rolls * (1.0 - starts), roll.wider(variance)),
-            (self.slips * stops, slip.wider(variance)),
-            (self.rolls * starts, roll.wider(variance + (SIZE * speed) ** 2)),
-            (
-                self.slips * (1.0 - stops),
-                Gauss(slip.mean + speed * size.mean, speed**2 * size.variance + gained + variance),
-            ),
+            (self.rolls - starts, roll),
+            (stops, slip),
+            (starts * STRAYS, roll.wider(wide)),
+            (starts * (1.0 - STRAYS), roll.wider(wide)),
+            (self.slips - stops, on),
         )
-        rolls, again, begun, on = _normed(
-            [math.log(max(prior, LEAST)) + fit.log(seen) for prior, fit in fits]
-        )
-        slips = min(max(begun + on, LEAST), 1.0 - LEAST)
-        fresh = NEW.given(seen - roll.mean, variance, speed)
+        w = _normed([math.log(max(p, LEAST)) + fit.wider(variance).log(seen) for p, fit in fits])
+        rolling = roll.given(seen, variance).or_(slip.given(seen, variance), w[1] / (w[0] + w[1]))
+        stray = roll.wider(wide).given(seen, variance)
+        fresh, lasts = NEW.given(seen - roll.mean, variance, speed), w[4] / (w[3] + w[4])
+        slips = min(max(w[3] + w[4], LEAST), 1.0 - LEAST)
         return self._replace(
             time=time,
-            rolling=roll.given(seen, counted).or_(slip.given(seen, counted), again / (rolls + again)),
-            slipping=roll.or_(slip, on / (begun + on)),
-            size=fresh.or_(size.given(seen - slip.mean, variance, speed), on / (begun + on)),
+            rolling=rolling.or_(stray, w[2] / (w[0] + w[1] + w[2])),
+            slipping=roll.or_(slip, lasts),
+            size=fresh.or_(size.given(seen - slip.mean, variance, speed), lasts),
             slips=slips,
             windows=self.windows + slips,
         )

@@ -269,11 +269,10 @@ class Wheels:
     def _doubted(self, time: float, peak: Peak, speed: float) -> float:
         """Variance that a reading counts with, greater where wheels seem to slip [m^2/s^2]."""
         own = peak.variance + self.floor**2
-        counted = self.inflate * own
         assert self.hold is not None
         assert self.course is not None
-        self.hold = self.hold.after(time, peak.off + self.course.gained, own, counted, speed)
-        return counted / self.hold.rolls
+        self.hold = self.hold.after(time, peak.off + self.course.gained, own, speed)
+        return self.inflate * own / self.hold.rolls
 
     def _peak(self, comb: Comb, heard: Spectrum, sd: float) -> Peak | None:
         """The speed that fits, where one does; speeds without a comb have a likelihood ratio of one."""
