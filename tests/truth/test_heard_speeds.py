@@ -4,9 +4,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from cars import OUTAGES, car, deaf, driven, ratio, worst
+from cars import OUTAGES, car, deaf, driven, ratio, said, worst
 
+from gapless.bridges.combs import Combs
 from gapless.bridges.orders import WINDOW
+from gapless.bridges.wheels import TAUGHT, Wheels
 from gapless.feed import events
 from gapless.scenarios import withhold
 from gapless.sensors.grades import grade
@@ -20,8 +22,6 @@ LOW = replace(CAR, wheels=(WheelComb(circumference=3.0),), engine=None)
 """Large wheels, whose low orders a log of 25 Hz still holds; a truck's."""
 GRADE = grade("consumer")
 NOISE = (float(np.max(GRADE.gyro_noise)), float(np.max(GRADE.accel_noise)))
-SLIPS = tuple(Slip(o.start + 20.0, 6.0, 1.1) for o in OUTAGES)
-"""Driven wheels ten per cent faster than the car, for some seconds in each outage."""
 GEARS = Engine(gears=(Gear(6.0, 11.3), Gear(9.0, 6.9), Gear(12.0, 4.9), Gear(float("inf"), 3.3)))
 
 
@@ -83,14 +83,36 @@ def test_wheels_that_are_heard_help(seed, most, system):
     assert found < most
 
 
-def test_slip_does_not_carry_the_filter_off():
-    log = car(3, replace(CAR, slips=SLIPS))
-    base = worst(driven(log, "constraints"), log)
-    slipped = worst(driven(log, "wheels"), log)
-    print(slipped.round(1), base.round(1), worst(driven(car(3), "wheels"), car(3)).round(1))
-    # six seconds at 20 m/s and ten per cent are 12 m, if every reading were believed
-    assert ratio(slipped, base) < 1.0
-    assert (slipped - base).max() < 12.0
+@pytest.mark.parametrize(
+    ("slip", "most", "noticed"),
+    [
+        (Slip(20.0, 6.0, 1.1), 1.2, 10),
+        (Slip(20.0, 8.0, 1.05), 1.4, 15),
+        (Slip(20.0, 4.0, 1.2), 1.2, 0),
+        (Slip(25.0, 6.0, 0.9), 1.4, 4),
+    ],
+)
+def test_slip_does_not_carry_the_filter_off(slip, most, noticed):
+    """Largest errors against those of the same drive without slip; all readings believed, 1.8, 2.6, 1.1, 1.6.
+
+    A slip of a fifth is mostly beyond the search, and says nothing.
+    """
+    slips = tuple(slip._replace(start=o.start + slip.start) for o in OUTAGES)
+    solution = driven(car(3, replace(CAR, slips=slips)), "wheels")
+    found = ratio(worst(solution, car(3)), worst(driven(car(3), "wheels"), car(3)))
+    print(f"{slip.ratio:g}: {found:.2f}, {windows_of_slip(solution)}")
+    assert found < most
+    assert windows_of_slip(solution) >= noticed
+
+
+def test_wheels_that_roll_are_hardly_ever_taken_to_slip():
+    solution = driven(car(3), "wheels")
+    # of some 280 readings; each has a few thousandths of doubt
+    assert windows_of_slip(solution) <= 5
+
+
+def windows_of_slip(solution):
+    return int(said(solution, "wheels heard")[1].rsplit(" ", 1)[-1])
 
 
 def test_gear_changes_are_no_wheels():
@@ -103,3 +125,52 @@ def test_gear_changes_are_no_wheels():
     found = ratio(worst(driven(log, "wheels"), log), worst(driven(log, "constraints"), log))
     print(f"{found:.3f}")
     assert found < 0.75
+
+
+def louder(engine, factor):
+    """An engine with larger amplitudes."""
+    lines = [replace(h, rate=scaled(h.rate, factor), accel=scaled(h.accel, factor)) for h in engine.harmonics]
+    return replace(engine, harmonics=tuple(lines))
+
+
+def scaled(three, factor):
+    return tuple(factor * a for a in three)
+
+
+def test_a_loud_engine_is_heard_in_its_gears():
+    """Three times as loud, tyres a third as loud: a comb at a speed says what the mean of all does not."""
+    chassis = replace(CAR, engine=louder(GEARS, 3.0), signal=0.35)
+    memory, heard = learned_and_heard(chassis)
+    combs, told = Combs.of(memory), []
+    for one in heard:
+        speeds = one.speed + np.arange(-3.0, 3.01, 0.1)
+        speeds = np.concatenate([[one.speed], speeds[speeds > 2.5]])
+        for comb in (combs.at(one.speed), combs.common):
+            log = 0.15 * comb.evidence(one, speeds)
+            told.append(log[0] - np.log(np.mean(np.exp(log[1:]))))
+    at_speed, common = np.mean(told[::2]), np.mean(told[1::2])
+    print(f"{at_speed:.2f} nats, {common:.2f} from the mean of all speeds, {len(heard)} spectra")
+    assert at_speed > common + 0.1
+
+
+def learned_and_heard(chassis):
+    """What was learned in the first half of a drive, and the spectra of the second."""
+    log, heard = car(3, chassis), []
+
+    class Halves(Wheels):
+        def _learn(self, belief, spectrum, time):
+            if time < log.start + 420.0:
+                super()._learn(belief, spectrum, time)
+            elif spectrum.speed > TAUGHT:
+                heard.append(spectrum)
+
+    bridge = Halves({})
+
+    def finish(setup):
+        bridge.sensors = setup.sensors
+        return replace(setup, bridges=(bridge,))
+
+    navigator = navigator_for(log, named("wheels"), DECIDED, 10.0, finish=finish)
+    for event in events(log, {}):
+        navigator.step(event)
+    return navigator.bridges[0].memory, heard
