@@ -163,7 +163,7 @@ class Memory:
         Left
         """
         mean = moving_mean(self.mean / max(self.windows, 1.0), SMOOTH)
-        driven = shares(np.asarray(SPEED_BIN * (np.arange(SPEED_BINS) + 0.5), float)).T * self.speeds
+        driven = _BINS.T * self.speeds
         fixed = np.array([unmoved(mean, self.top, speeds) for speeds in driven])
         count = self.count.sum(axis=0)
         spread = self.square - (fixed.sum(axis=0) ** 2 / np.maximum(count, 1.0)).sum(axis=1)
@@ -216,6 +216,9 @@ def shares(speeds: Array) -> Array:
         Sums to one.
     """
     return np.array([np.interp(speeds, KNOTS, one) for one in np.eye(len(KNOTS))]).T
+
+
+_BINS: Final = shares(np.asarray(SPEED_BIN * (np.arange(SPEED_BINS) + 0.5), float))
 
 
 def shrunk(raw: Array, doubt: Array) -> Array:

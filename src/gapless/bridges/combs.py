@@ -46,10 +46,10 @@ class Combs:
         count, raw = left.common()
         doubt = left.variance[:, None] / count
         common = Comb(shrunk(raw, doubt), np.sqrt(doubt), left.variance, left.mean)
-        others = np.empty_like(left.total)
-        for k, seen in enumerate(left.count + DOUBT):
-            own = without_trend((left.total[k] + DOUBT * raw) / seen)  # unseen, it is the common one
-            others[k] = shrunk(own - raw, left.variance[:, None] / seen)
+        seen = (left.count + DOUBT)[:, None, :]
+        own = (left.total + DOUBT * raw) / seen  # unseen, it is the common one
+        own = without_trend(own.reshape(-1, own.shape[-1])).reshape(own.shape)
+        others = shrunk(own - raw, left.variance[:, None] / seen)
         return cls(common, others)
 
     def at(self, speed: float) -> Comb:
