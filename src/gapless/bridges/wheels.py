@@ -2,7 +2,7 @@
 
 While GNSS speaks it learns the comb of this car over orders; while GNSS is silent it finds the speed at
 which a spectrum fits that comb best, around what the filter says, and whether it fits better than no
-comb at all. What it says is a speed: (z, H, R) on the length of the velocity.
+comb at all. What it says is a speed: (z, H, R) on the mean length of the velocity over the window.
 """
 
 from __future__ import annotations
@@ -11,15 +11,17 @@ import math
 from collections.abc import Mapping
 from copy import copy
 from dataclasses import dataclass, field, fields
-from typing import ClassVar, Final, NamedTuple, Self
+from typing import ClassVar, Final, Self
 
 import numpy as np
 
 from gapless.bridges.base import Saying
-from gapless.bridges.comb import Comb, Memory
+from gapless.bridges.comb import Memory
 from gapless.bridges.combs import Combs
 from gapless.bridges.course import Course, Drift
+from gapless.bridges.mean_speed import mean_speed
 from gapless.bridges.orders import LOWEST, ORDERS, STEP, WINDOW, Spectrum, spectrum
+from gapless.bridges.peak import Peak, Trust, peak
 from gapless.bridges.slip import Hold
 from gapless.bridges.vehicle import recalled
 from gapless.errors import ConfigError
@@ -30,37 +32,16 @@ from gapless.measurements.base import Observation, Sensor
 from gapless.recording import Array
 from gapless.solution import Decision
 
-SLOWEST: Final = 2.5
-"""Below this speed no comb is heard [m/s]: such speeds are the null hypothesis."""
 TAUGHT: Final = 3.5
 """Spectra of slower driving are not learned from [m/s]."""
 SURE: Final = 0.5
 """Nor are those where the filter's speed is less certain than this [m/s]."""
-GRID: Final = 0.08
-"""Distance of the speeds that are looked at [m/s]."""
-NEAR: Final = 0.6
-"""Half width of a peak [m/s]."""
 RATE: Final = 25.0
 """A slower IMU hears no wheels [Hz]."""
 CRAWL: Final = 0.5
 """Time is not warped to slower speeds [m/s]."""
 ROOM: Final = 0.4
 """Samples and velocities are kept for so much longer than a window [s]."""
-
-
-class Peak(NamedTuple):
-    """What a spectrum says about the speed.
-
-    Parameters
-    ----------
-    off : float
-        Speed less that of the filter [m/s].
-    variance : float
-        [m^2/s^2]
-    """
-
-    off: float
-    variance: float
 
 
 @dataclass
@@ -133,6 +114,11 @@ class Wheels:
             raise ConfigError(f"bridge.parameters: vehicle is {self.vehicle!r}; give the name of a file")
         if self.vehicle:
             self.memory = recalled(self.vehicle)
+
+    @property
+    def trust(self) -> Trust:
+        """How likelihoods are believed."""
+        return Trust(self.temper, self.deaf, self.evidence, self.mass, self.widest)
 
     def feel(self, block: ImuBlock) -> None:
         """See `Bridge`."""
@@ -244,18 +230,16 @@ class Wheels:
         if self.combs is None:
             self.combs = Combs.of(self.memory)
         self._follow(belief, time)
-        sd = math.hypot(self.doubt * speed_sd(belief), 0.3)
-        peak = self._peak(self.combs.at(heard.speed), heard, sd)
-        if peak is None:
+        h = mean_speed(belief, WINDOW)
+        own = math.sqrt(max(float(h[0] @ belief.P @ h[0]), 0.0))
+        found = peak(self.combs.at(heard.speed), heard, math.hypot(self.doubt * own, 0.3), self.trust)
+        if found is None:
             self.refused += 1
             return ()
-        v = belief.estimate()[3:6]
-        speed = float(np.linalg.norm(v))
-        r = self._doubted(time, peak, speed)
-        h = np.zeros((1, belief.layout.n))
-        h[0, 3:6] = v / speed
-        self.readings = (*self.readings, Heard(time, speed + peak.off, math.sqrt(r), speed))
-        return (Saying("bridge_speed", Observation(np.array([peak.off]), h, np.array([[r]]))),)
+        speed = float(np.linalg.norm(belief.estimate()[3:6]))
+        r = self._doubted(time, found, speed)
+        self.readings = (*self.readings, Heard(time, speed + found.off, math.sqrt(r), speed))
+        return (Saying("bridge_speed", Observation(np.array([found.off]), h, np.array([[r]]))),)
 
     def _follow(self, belief: Belief, time: float) -> None:
         """The inertial course through this silence."""
@@ -266,38 +250,13 @@ class Wheels:
             self.hold = Hold.begin(time - self.patience, speed_sd(belief) ** 2, self.drift.rate, before)
         self.course = self.course.to(time, v / np.linalg.norm(v), corrected)
 
-    def _doubted(self, time: float, peak: Peak, speed: float) -> float:
+    def _doubted(self, time: float, found: Peak, speed: float) -> float:
         """Variance that a reading counts with, greater where wheels seem to slip [m^2/s^2]."""
-        own = peak.variance + self.floor**2
+        own = found.variance + self.floor**2
         assert self.hold is not None
         assert self.course is not None
-        self.hold = self.hold.after(time, peak.off + self.course.gained, own, speed)
+        self.hold = self.hold.after(time, found.off + self.course.gained, own, speed)
         return self.inflate * own / self.hold.rolls
-
-    def _peak(self, comb: Comb, heard: Spectrum, sd: float) -> Peak | None:
-        """The speed that fits, where one does; speeds without a comb have a likelihood ratio of one."""
-        reach = min(max(3.5 * sd, 0.8), self.widest)
-        speeds = np.arange(max(0.0, heard.speed - reach), heard.speed + reach, GRID)
-        log, audible = np.zeros(len(speeds)), speeds >= SLOWEST
-        if audible.sum() < 5:
-            return None
-        ratio = np.exp(self.temper * comb.evidence(heard, speeds[audible]))
-        log[audible] = np.log((1.0 - self.deaf) * ratio + self.deaf)
-        prior = np.exp(-0.5 * ((speeds - heard.speed) / sd) ** 2)
-        posterior = log + np.log(prior)
-        k = int(posterior.argmax())
-        if k in (0, len(speeds) - 1) or log[k] < self.evidence or speeds[k] < SLOWEST + 0.1:
-            return None
-        share = np.exp(posterior - posterior[k])
-        near = np.abs(speeds - speeds[k]) < NEAR
-        everywhere = sd * math.sqrt(2.0 * math.pi) / GRID  # a speed beyond the search has no comb either
-        beyond = max(0.0, everywhere - float(prior.sum())) * math.exp(-posterior[k])
-        if share[near].sum() < self.mass * (share.sum() + beyond):
-            return None
-        weight = np.exp(log[near] - log[near].max())
-        weight /= weight.sum()
-        mean = float(weight @ speeds[near])
-        return Peak(mean - heard.speed, float(weight @ (speeds[near] - mean) ** 2))
 
 
 def speed_sd(belief: Belief) -> float:
