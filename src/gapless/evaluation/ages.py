@@ -29,6 +29,8 @@ class Ages(Columns):
         [rad], signed.
     bound : ndarray, shape (n,)
         Semi-major axis of the stated 95 % ellipse [m].
+    nees : ndarray, shape (n,)
+        Squared Mahalanobis distance of the horizontal position: ellipses hold the truth where it is small.
     """
 
     horizontal: Array
@@ -38,6 +40,7 @@ class Ages(Columns):
     velocity: Array
     heading: Array
     bound: Array
+    nees: Array
 
 
 QUANTITIES: Final = ("horizontal", "vertical", "along", "cross", "velocity", "heading")
@@ -73,4 +76,5 @@ def ages(errors: Errors, outage: Outage, start: float, height_offset: float = 0.
         velocity=np.hypot(part.velocity[:, 0], part.velocity[:, 1]),
         heading=part.attitude[:, 2],
         bound=part.bound(),
+        nees=part.nees,
     )

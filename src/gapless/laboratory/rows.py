@@ -108,6 +108,7 @@ def age_columns(key: Key, start: float, ages: Ages) -> Block:
         "age": ages.time,
         **{_named(name): getattr(ages, name) / (DEG if name == "heading" else 1.0) for name in QUANTITIES},
         "bound": ages.bound,
+        "nees": ages.nees,
     }
 
 

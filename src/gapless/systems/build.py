@@ -20,8 +20,8 @@ from gapless.measurements.stillness import Stillness
 from gapless.recording import Array, Recording
 from gapless.sensors import grade
 from gapless.settings import Settings
+from gapless.systems.adjust import named
 from gapless.systems.learning import bridges
-from gapless.systems.library import load
 from gapless.systems.recipe import Imu, System
 from gapless.units import DEG
 
@@ -115,7 +115,7 @@ def candidates(system: System) -> list[System]:
     ConfigError
         If there is no such system, or it has no bridge.
     """
-    found = [load(name) for name in system.rehearsal.others]
+    found = [named(name) for name in system.rehearsal.others]
     for other in found:
         if other.bridge.model == "none":
             raise ConfigError(f"rehearsal.others: {other.name} has no bridge; name a system that has one")

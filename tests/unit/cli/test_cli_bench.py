@@ -32,7 +32,7 @@ def test_the_folder_is_the_contract(bench):
     assert want <= set(outages.column_names)
     ages = pq.read_table(folder / "ages.parquet").column_names
     parts = ["horizontal", "vertical", "along", "cross", "velocity", "heading_deg"]
-    assert ages == [*KEYS, "start", "age", *parts, "bound"]
+    assert ages == [*KEYS, "start", "age", *parts, "bound", "nees"]
     tracks = pq.read_table(folder / "tracks.parquet")
     assert tracks.column_names == [
         *("recording", "kind", "protocol", "scenario", "start", "time", "lat", "lon"),
@@ -62,6 +62,9 @@ def test_errors_by_age_are_those_of_the_scores(bench):
         part = ages[(ages[KEYS] == [row[k] for k in KEYS]).all(axis=1) & (ages["start"] == row["start"])]
         assert len(part) == row["truth_epochs"]
         assert part["horizontal"].max() == row["horizontal_max"]
+        # The same numbers, summed in another order; 5.991 is the 95 % quantile of two degrees of freedom.
+        assert part["nees"].mean() == pytest.approx(row["nees"], rel=1e-9)
+        assert (part["nees"] <= 5.9915).mean() == row["coverage_95"]
         assert abs(part["heading_deg"].iloc[-1]) == pytest.approx(row["heading_deg_end"])
 
 
