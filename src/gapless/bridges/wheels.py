@@ -17,7 +17,7 @@ import numpy as np
 
 from gapless.bridges.base import Saying
 from gapless.bridges.comb import Comb, Memory
-from gapless.bridges.orders import LOWEST, ORDERS, STEP, WINDOW, Spectrum, spectrum
+from gapless.bridges.orders import LOWEST, ORDERS, STEP, WINDOW, Spectrum, pace, rates, spectrum
 from gapless.bridges.vehicle import recalled
 from gapless.errors import ConfigError
 from gapless.events import ImuBlock, Motion, Reading
@@ -198,15 +198,15 @@ class Wheels:
         rows = self._samples(time - WINDOW - ROOM, time)
         if len(rows) < 3:
             return None
-        self.rate = 1.0 / float(np.median(np.diff(rows[:, 0])))
+        gap, longest = pace(rows)
+        self.rate = 1.0 / gap
         times, gained = belief.trail.behind(WINDOW)
         if len(times) < 10 or times[0] > time - WINDOW or times[-1] < time - 1e-3:
             return None
         speeds = np.linalg.norm(belief.estimate()[3:6] + gained, axis=1)
         if speeds.min() < CRAWL:
             return None
-        gaps = np.diff(rows[:, 0])
-        if self.rate < RATE - 0.5 or gaps.max() > 0.2 or rows[0, 0] > time - WINDOW:
+        if self.rate < RATE - 0.5 or longest > 0.2 or rows[0, 0] > time - WINDOW:
             return None
         return spectrum(rows, times, speeds, time, 0.5 * self.rate - 3.0)
 
@@ -216,11 +216,12 @@ class Wheels:
             self.felt.pop(0)
         if not self.felt:
             return np.zeros((0, 7))
-        block = ImuBlock.join(self.felt)
-        block = block.rows(0, int(np.searchsorted(block.time, end, side="right")))  # felt goes ahead
-        dt = block.dt[:, None]
-        rows = np.column_stack([block.time - 0.5 * block.dt, block.dtheta / dt, block.dvel / dt])
-        return rows[np.searchsorted(rows[:, 0], begin) :]
+        if len(self.felt) > 1:
+            self.felt = [ImuBlock.join(self.felt)]
+        block = self.felt[0]  # it goes ahead of the tick
+        kept = block.rows(int(np.searchsorted(block.time, begin)), len(block.time))
+        self.felt = [kept]
+        return rates(*kept, begin, end)
 
     def _learn(self, belief: Belief, heard: Spectrum) -> None:
         if heard.speed < TAUGHT or speed_sd(belief) > SURE:
