@@ -98,8 +98,9 @@ class Navigator(Ticking):
             `Settings.lateness`.
         """
         if isinstance(event, ImuBlock):
-            self._past.before(self._state, event)
-            self._feel(event)
+            for part in self._past.parts(event):
+                self._past.before(self._state, part)
+                self._feel(part)
         elif event:
             self._hear(event)
 

@@ -11,7 +11,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from gapless._numba import inline, kernel
+from gapless._numba import inline, inlined, kernel
 from gapless.events import EPS
 from gapless.filters.update import assess, correct
 from gapless.inertial.belief import inject
@@ -22,6 +22,10 @@ from gapless.measurements.stillness import rests
 from gapless.measurements.vehicle import slip
 from gapless.measurements.zero_velocity import zero_velocity
 from gapless.recording import Array
+
+_propagate, _inject = inlined(propagate), inlined(inject)
+_assess, _correct = inlined(assess), inlined(correct)
+_zero_velocity, _slip = inlined(zero_velocity), inlined(slip)
 
 STANDSTILL, SLIP = 0, 1
 """The constraints that are compiled, in their order."""
@@ -132,7 +136,7 @@ def coast(
         if count[TICKS] == rows.shape[0] or (length > 0.0 and full(store, ends)):
             count[WHY] = ROOM
             break
-        k = propagate(
+        k = _propagate(
             x, memory, width, p, scratch, error, offsets, noise,
             time, dt, dtheta, dvel, k, last, period, tick, flush,
         )  # fmt: skip
@@ -147,12 +151,12 @@ def coast(
         memory[TICK_DT:] = 0.0
         felt = motion[2:]
         if still.size > 0 and rests(x, p, ROW, now, lasted, felt, still, still_memory):
-            z, h, r = zero_velocity(x, n, felt, still[0], still[1])
+            z, h, r = _zero_velocity(x, n, felt, still[0], still[1])
             if not _take(STANDSTILL, now, x, p, n, z, h, r, bounds, latest, corrected, heard, found, count):
                 count[WHY] = SURPRISE + STANDSTILL
                 break
         if slips.size > 0 and now - slip_memory[0] >= slips[4] - 1e-3:
-            forward, z, h, r = slip(x, offsets, n, slips[6:], slips[5], felt, slips[0], slips[1], slips[2])
+            forward, z, h, r = _slip(x, offsets, n, slips[6:], slips[5], felt, slips[0], slips[1], slips[2])
             if forward >= slips[3]:
                 slip_memory[0] = now
                 if not _take(SLIP, now, x, p, n, z, h, r, bounds, latest, corrected, heard, found, count):
@@ -184,7 +188,7 @@ def _take(
 ) -> bool:
     """Update, unless it is a surprise."""
     m = z.size
-    nis, s, hp = assess(p, ROW, n, z, h, r)
+    nis, s, hp = _assess(p, ROW, n, z, h, r)
     if not nis <= bounds[which]:
         return False
     if time > latest[which]:
@@ -195,8 +199,8 @@ def _take(
             for j in range(m):
                 found[which, k, 2 + m + m * i + j] = s[i, j]
         count[UPDATES + which] = k + 1
-    dx = correct(p, ROW, n, z, h, r, s, hp, 1.0)
-    inject(x, dx)
+    dx = _correct(p, ROW, n, z, h, r, s, hp, 1.0)
+    _inject(x, dx)
     for i in range(3):
         corrected[i] += dx[3 + i]
     heard[OWN + which] = time
