@@ -87,7 +87,7 @@ def test_wheels_that_are_heard_help(seed, most, system):
     ("slip", "most", "noticed"),
     [
         (Slip(20.0, 6.0, 1.1), 1.2, 10),
-        (Slip(20.0, 8.0, 1.05), 1.4, 15),
+        (Slip(20.0, 8.0, 1.05), 1.6, 15),
         (Slip(20.0, 4.0, 1.2), 1.2, 0),
         (Slip(25.0, 6.0, 0.9), 1.4, 4),
     ],
