@@ -15,14 +15,14 @@ from gapless.recording import Array
 
 
 class Layers(NamedTuple):
-    """Weights of a network with one output: hidden.T @ x + bias, tanh, output.T @ that + constant.
+    """Weights of a network: hidden.T @ x + bias, tanh, output.T @ that + constant.
 
     Parameters
     ----------
     hidden : ndarray, shape (m, n_nodes)
-    output : ndarray, shape (n_nodes, 1)
+    output : ndarray, shape (n_nodes, k)
     bias : ndarray, shape (n_nodes,)
-    constant : ndarray, shape (1,)
+    constant : ndarray, shape (k,)
     """
 
     hidden: Array
@@ -35,10 +35,10 @@ class Perceptron(Learner):
     """A hidden layer of tanh nodes and a linear output, trained as a whole by L-BFGS.
 
     It minimises (sum of squared residuals + penalty |w|^2) / 2n, w all weights but bias and constant, from
-    the uniform weights of Glorot and Bengio 2010 (eq. 16), drawn for bias and constant too; every output
-    has a network of its own. The paper names neither layer nor method ("back-propagation"). On some hundred
-    samples a quasi-Newton method needs no learning rate and gives the same result whatever their order.
-    What scikit-learn's MLPRegressor computes with these settings, and in less than half the time.
+    the uniform weights of Glorot and Bengio 2010 (eq. 16), drawn for bias and constant too. All outputs are
+    those of one network, and their squared residuals are summed (aslinezhad2020, eq. 30). The paper names
+    neither layer nor method ("back-propagation"). On some hundred samples a quasi-Newton method needs no
+    learning rate and gives the same result whatever their order.
 
     Parameters
     ----------
@@ -55,10 +55,8 @@ class Perceptron(Learner):
 
     Attributes
     ----------
-    layers_ : list of Layers
-        One an output.
+    layers_ : Layers
     n_iter_ : int
-        Most iterations that a network took.
     """
 
     _parameter_constraints: ClassVar[dict[str, Any]] = {
@@ -84,58 +82,58 @@ class Perceptron(Learner):
         self.random_state = random_state
 
     def _fit(self, X: Array, targets: Array, weight: Array) -> Self:
-        found = [self._network(X, column[:, None]) for column in targets.T]
-        self.layers_ = [layers for layers, _ in found]
-        self.n_iter_ = max(count for _, count in found)
-        return self
-
-    def _network(self, X: Array, target: Array) -> tuple[Layers, int]:
+        sizes = X.shape[1], self.n_nodes, targets.shape[1]
         found = minimize(
-            misfit, self._first(X.shape[1]), (X, target, self.n_nodes, self.penalty),
+            misfit, self._first(*sizes), (X, targets, self.n_nodes, self.penalty),
             method="L-BFGS-B", jac=True,
             options={"maxiter": self.max_iter, "gtol": self.tolerance, "maxfun": 30 * self.max_iter},
         )  # fmt: skip
-        return unpacked(found.x, X.shape[1], self.n_nodes), int(found.nit)
+        self.layers_, self.n_iter_ = unpacked(found.x, *sizes), int(found.nit)
+        return self
 
-    def _first(self, inputs: int) -> Array:
+    def _first(self, inputs: int, nodes: int, outputs: int) -> Array:
         rng = check_random_state(self.random_state)
         drawn: list[tuple[Array, Array]] = []
-        for fan_in, fan_out in ((inputs, self.n_nodes), (self.n_nodes, 1)):
+        for fan_in, fan_out in ((inputs, nodes), (nodes, outputs)):
             bound = np.sqrt(6.0 / (fan_in + fan_out))
             drawn.append((rng.uniform(-bound, bound, (fan_in, fan_out)), rng.uniform(-bound, bound, fan_out)))
         (hidden, bias), (output, constant) = drawn
         return np.concatenate([part.ravel() for part in Layers(hidden, output, bias, constant)])
 
     def _predict(self, X: Array) -> Array:
-        columns = [np.tanh(X @ w.hidden + w.bias) @ w.output + w.constant for w in self.layers_]
-        return np.hstack(columns)
+        w = self.layers_
+        answer: Array = np.tanh(X @ w.hidden + w.bias) @ w.output + w.constant
+        return answer
 
 
-def unpacked(weights: Array, inputs: int, nodes: int) -> Layers:
+def unpacked(weights: Array, inputs: int, nodes: int, outputs: int) -> Layers:
     """Weights by layer; views.
 
     Parameters
     ----------
-    weights : ndarray, shape (inputs nodes + 2 nodes + 1,)
-    inputs, nodes : int
+    weights : ndarray, shape (inputs nodes + nodes outputs + nodes + outputs,)
+    inputs, nodes, outputs : int
 
     Returns
     -------
     Layers
     """
     a = inputs * nodes
-    b, c = a + nodes, a + 2 * nodes
-    return Layers(weights[:a].reshape(inputs, nodes), weights[a:b, None], weights[b:c], weights[c:])
+    b = a + nodes * outputs
+    c = b + nodes
+    return Layers(
+        weights[:a].reshape(inputs, nodes), weights[a:b].reshape(nodes, outputs), weights[b:c], weights[c:]
+    )
 
 
-def misfit(weights: Array, X: Array, target: Array, nodes: int, penalty: float) -> tuple[float, Array]:
+def misfit(weights: Array, X: Array, targets: Array, nodes: int, penalty: float) -> tuple[float, Array]:
     """What a network minimises, and its gradient by back-propagation (aslinezhad2020, eq. 28 to 30).
 
     Parameters
     ----------
-    weights : ndarray, shape (m nodes + 2 nodes + 1,)
+    weights : ndarray, shape (m nodes + nodes k + nodes + k,)
     X : ndarray, shape (n, m)
-    target : ndarray, shape (n, 1)
+    targets : ndarray, shape (n, k)
     nodes : int
     penalty : float
 
@@ -144,19 +142,20 @@ def misfit(weights: Array, X: Array, target: Array, nodes: int, penalty: float) 
     value : float
     gradient : ndarray, as `weights`
     """
-    n, w = len(X), unpacked(weights, X.shape[1], nodes)
+    n, sizes = len(X), (X.shape[1], nodes, targets.shape[1])
+    w = unpacked(weights, *sizes)
     z = X @ w.hidden
     z += w.bias
     np.tanh(z, out=z)
     delta = z @ w.output
     delta += w.constant
-    delta -= target
+    delta -= targets
     size = sum(float(np.dot(part, part)) for part in (w.hidden.ravel(), w.output.ravel()))
-    value = 0.5 * float(np.add.reduce(delta**2, axis=0)[0] / n) + 0.5 * penalty * size / n
-    back = delta * w.output.T
+    value = 0.5 * (float(np.vdot(delta, delta)) + penalty * size) / n
+    back = delta @ w.output.T
     back *= 1.0 - z**2
     gradient = np.empty_like(weights)
-    g = unpacked(gradient, X.shape[1], nodes)
+    g = unpacked(gradient, *sizes)
     np.add(X.T @ back, penalty * w.hidden, out=g.hidden)
     np.add(z.T @ delta, penalty * w.output, out=g.output)
     np.add.reduce(back, axis=0, out=g.bias)
