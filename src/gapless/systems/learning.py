@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from contextlib import suppress
 from inspect import signature
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, Literal
@@ -11,7 +12,7 @@ from typing import TYPE_CHECKING, Any, Final, Literal
 import numpy as np
 from msgspec import Struct
 
-from gapless.errors import ConfigError
+from gapless.errors import ConfigError, MissingExtraError
 from gapless.systems.values import Count, NonNegative, Positive, WholeNumber
 
 if TYPE_CHECKING:
@@ -101,6 +102,29 @@ def check(use: BridgeUse) -> None:
         raise ConfigError("bridge.learns is empty; name position, velocity or both")
     if use.model == "error" and use.reference == "gnss" and "attitude" in use.learns:
         raise ConfigError('GNSS shows no attitude; learn it with bridge.reference = "filter"')
+
+
+def check_learner(use: BridgeUse, who: LearnerUse) -> None:
+    """See that a learner is one that can be made; where scikit-learn is missing, `bridges` says so.
+
+    Parameters
+    ----------
+    use : BridgeUse
+    who : LearnerUse
+
+    Raises
+    ------
+    ConfigError
+        If there is no such learner, or it has no such parameters.
+    """
+    if use.model not in MODELS:
+        return
+    from gapless.learners import LEARNERS, make
+
+    if who.name in LEARNERS and not who.parameters:
+        return  # nothing that could be wrong: built-in recipes are listed without importing scikit-learn
+    with suppress(MissingExtraError):
+        make(who.name, who.parameters, who.seed)
 
 
 def _check_own(use: BridgeUse, known: list[str]) -> None:
