@@ -7,12 +7,12 @@ from collections.abc import Mapping
 from contextlib import suppress
 from inspect import signature
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Final, Literal
 
 import numpy as np
-from msgspec import Struct
+from msgspec import Meta, Struct
 
-from gapless.errors import ConfigError, MissingExtraError
+from gapless.errors import ConfigError, MissingExtraError, registered_elsewhere
 from gapless.systems.values import Count, NonNegative, Positive, WholeNumber
 
 if TYPE_CHECKING:
@@ -61,7 +61,7 @@ class LearnerUse(Struct, forbid_unknown_fields=True, frozen=True):
     """
 
     name: str = "rvfl"
-    seed: WholeNumber = 0
+    seed: Annotated[int, Meta(ge=0, lt=2**32)] = 0
     parameters: dict[str, Any] = {}
     model: str = ""
 
@@ -83,17 +83,18 @@ def check(use: BridgeUse) -> None:
     from gapless.bridges import BRIDGES
     from gapless.bridges.epochs import FEATURES
 
+    hint = registered_elsewhere()
     if use.model in BRIDGES:
         _check_own(use, list(signature(BRIDGES[use.model]).parameters)[1:])
         return
     if use.model not in MODELS:
         choices = ", ".join(("none", *MODELS, *BRIDGES))
-        raise ConfigError(f"bridge.model: {use.model!r} is unknown; choose from {choices}")
+        raise ConfigError(f"bridge.model: {use.model!r} is unknown; choose from {choices}{hint}")
     if use.parameters:
         raise ConfigError(f"bridge.parameters are for bridges of your own; {use.model} has none")
     unknown = [name for name in use.features if name not in FEATURES]
     if unknown:
-        raise ConfigError(f"bridge.features has {unknown[0]!r}; choose from {', '.join(FEATURES)}")
+        raise ConfigError(f"bridge.features has {unknown[0]!r}; choose from {', '.join(FEATURES)}{hint}")
     if not use.features and not use.window:
         raise ConfigError("bridge shows its learner nothing; give bridge.features or bridge.window")
     if use.model == "increment" and (use.window or use.lags > 1):
@@ -161,10 +162,11 @@ def bridges(
     Raises
     ------
     ConfigError
-        If there is no such learner, or what it needs is not installed.
+        If there is no such bridge, feature or learner in this process, or what it needs is not installed.
     """
     if use.model == "none":
         return ()
+    check(use)  # a recipe may have been read by another process, with registries of its own
     from gapless.bridges import BRIDGES
 
     if use.model in BRIDGES:

@@ -57,6 +57,7 @@ def refused(text):
             ["learner 'elmo'", "elm, fourier_elm", "sklearn.linear"],
         ),
         ("like = 'wang2018'\n[learner]\nname = 'sklearn.svm.SRV'", ["sklearn.svm.SRV", "check its path"]),
+        ("[learner]\nseed = 4294967296", ["learner.seed", "4294967295"]),
         ("like = 'wang2018'\n[learner.parameters]\nnods = 3", ["learner 'fourier_elm'", "'nods'", "n_nodes"]),
         ("like = 'wang2018'\n[learner]\nparameters = {n_nodes = 0}", ["learner 'fourier_elm'", "n_nodes"]),
         ("[adaptation.fading]\nfactr = 1.1", ["factr", "adaptation.fading", "factor"]),
