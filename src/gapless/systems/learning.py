@@ -17,8 +17,8 @@ from gapless.systems.values import Count, NonNegative, Positive, WholeNumber
 
 if TYPE_CHECKING:
     from gapless.bridges.base import Bridge
-    from gapless.bridges.learned import Trained
     from gapless.bridges.model import Model
+    from gapless.bridges.schedule import Trained
     from gapless.measurements.base import Sensor
 
 MODELS: Final = ("error", "increment")
@@ -171,8 +171,9 @@ def bridges(
 
     if use.model in BRIDGES:
         return (BRIDGES[use.model](sensors, **use.parameters),)
-    from gapless.bridges.learned import LearnedBridge, Schedule
+    from gapless.bridges.learned import LearnedBridge
     from gapless.bridges.noise import CalibratedNoise, FilterNoise
+    from gapless.bridges.schedule import Schedule
     from gapless.bridges.shadow import Shadow
     from gapless.learners import make
 
@@ -199,8 +200,8 @@ def _saved(path: str, model: Model, use: BridgeUse) -> Trained | None:
     if not path:
         return None
     from gapless.bridges.epochs import unknown
-    from gapless.bridges.learned import Trained
     from gapless.bridges.noise import FilterNoise
+    from gapless.bridges.schedule import Trained
     from gapless.learners.saved import loads
 
     if use.noise == "calibrated":
