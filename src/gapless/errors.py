@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import multiprocessing
+
 
 class GaplessError(Exception):
     """Base of every error that a user can mend; the command line prints it as one line."""
@@ -44,3 +46,19 @@ class MissingExtraError(GaplessError):
 
     def __init__(self, package: str, extra: str) -> None:
         super().__init__(f"{package} is not installed; run: pip install 'gapless[{extra}]'")
+
+
+def registered_elsewhere() -> str:
+    """What to add where a name is in no registry: registries are each process's own.
+
+    Returns
+    -------
+    str
+        Empty but in a worker process.
+    """
+    if multiprocessing.parent_process() is None:
+        return ""
+    return (
+        "; one of your own must be registered at the top of your script, outside of "
+        'if __name__ == "__main__", for each worker process has its own names'
+    )

@@ -40,7 +40,7 @@ def samples(outputs, seed=0, n=60):
 
 
 CHECKED = {name: small(name) for name in NAMES}
-CHECKED |= {f"{name} alone": small(name).regressor for name in LEARNERS if name != "mlp"}  # which is not ours
+CHECKED |= {f"{name} alone": small(name).regressor for name in LEARNERS}
 CHECKED |= {
     "AdaBoostRT of weighted RELM": AdaBoostRT(ResidualWeighted(RandomLayer(penalty=1e-3)), rounds=3),
     "NAR": NAR(make("relm"), order=1),
@@ -114,7 +114,7 @@ def test_a_saved_learner_predicts_the_same_bits(name, outputs):
 
 
 # the MLP goes on by steps that depend on the order
-@pytest.mark.parametrize("name", [n for n in NAMES if hasattr(small(n), "partial_fit") and n != "mlp"])
+@pytest.mark.parametrize("name", [n for n in NAMES if hasattr(small(n), "partial_fit")])
 def test_samples_one_by_one_or_all_at_once_give_the_same(name):
     """From the first samples on, whose bounds and periods are kept."""
     x, y = samples(2)

@@ -51,6 +51,7 @@ def test_a_periodic_plan_expands_to_whole_outages_only():
         ("every=180,every=60,first=240,length=3", "'every' is given twice"),
         ("every=180,length=0,first=240", "above zero"),
         ("every=0,length=0,first=240", "above zero"),
+        ("every=1e-9,length=1e-10,first=240", "every is less than 1 s"),
         ("every=60,length=61,first=240", "overlap"),
         ("every=60,length=,first=240", "not a number"),
     ],

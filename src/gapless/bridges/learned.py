@@ -6,7 +6,7 @@ import math
 import statistics
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
+from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import numpy as np
 
@@ -14,6 +14,7 @@ from gapless.bridges.base import Saying
 from gapless.bridges.epochs import NOWHERE, Epoch
 from gapless.bridges.model import Model
 from gapless.bridges.noise import FilterNoise, Noise, rehearse
+from gapless.bridges.schedule import Schedule, Trained
 from gapless.bridges.shadow import Shadow, difference
 from gapless.events import ImuBlock, Motion, Reading
 from gapless.inertial import propagate as at
@@ -25,58 +26,6 @@ from gapless.solution import Decision
 
 if TYPE_CHECKING:
     from gapless.learners import Regressor
-
-
-@dataclass(frozen=True)
-class Schedule:
-    """When a bridge learns, and how much: counted in epochs, never in computing time.
-
-    Parameters
-    ----------
-    samples : int
-        Most epochs that are kept, the latest.
-    least : int
-        Fewer are not trained on.
-    every : float
-        Time between trainings [s]; inf trains when an outage begins.
-    interval : float
-        Epochs closer than this are not used [s].
-    purge : int
-        Epochs left out between those trained on and those held out.
-    settle : float
-        Time after an outage in which nothing is learned [s]: the filter still finds back, and by what it is
-        off then has nothing to do with the INS.
-    slack : float
-        How much later than it holds a fix may arrive [s]: silence begins so much later.
-    """
-
-    samples: int = 300
-    least: int = 30
-    every: float = math.inf
-    interval: float = 1.0
-    purge: int = 5
-    settle: float = 10.0
-    slack: float = 0.0
-
-
-class Trained(NamedTuple):
-    """A learner that has learned.
-
-    Parameters
-    ----------
-    learner : Regressor
-        Never changed again.
-    noise : Noise
-    time : float
-        When [s].
-    rows : int
-        From so many.
-    """
-
-    learner: Regressor
-    noise: Noise
-    time: float
-    rows: int
 
 
 @dataclass

@@ -134,7 +134,7 @@ def _navigate(work: Job, rate: float, smooth: bool) -> tuple[Solution, Scores | 
     from gapless.systems.smooth import smooth as smoothed
 
     most = work.recording.imu.rate
-    if rate > most * 1.01:
+    if not rate <= most * 1.01:
         raise ConfigError(f"--rate {rate:g}: the IMU has {most:.4g} samples a second; ask for no more")
     if smooth and work.causal:
         raise ConfigError("--smooth looks back and --causal never ahead; give one of them")

@@ -10,7 +10,7 @@ from sklearn.base import clone
 from sklearn.utils import check_random_state
 from sklearn.utils._param_validation import Integral, Interval
 
-from gapless.learners.base import OutputByOutput, TakesWeights, weighable
+from gapless.learners.base import OutputByOutput, TakesWeights, answers, taught, weighable
 from gapless.learners.random_layer import relm
 from gapless.recording import Array
 
@@ -41,7 +41,7 @@ class Weighted(NamedTuple):
         -------
         ndarray, shape (n,)
         """
-        answer: Array = np.column_stack([model.predict(X) for model in self.models]) @ self.shares
+        answer: Array = np.column_stack([answers(model, X) for model in self.models]) @ self.shares
         return answer
 
 
@@ -121,8 +121,8 @@ class AdaBoostRT(TakesWeights, OutputByOutput):
         spread = float(np.sqrt(share @ (y - share @ y) ** 2)) or 1.0
         models, votes, thresholds, phi, last = [], [], [], self.threshold, 0.0
         for _ in range(self.rounds):
-            model = _seeded(base, rng).fit(X, y, sample_weight=total * share)
-            error = np.abs(model.predict(X) - y) / spread
+            model = taught(_seeded(base, rng), X, y, total * share)
+            error = np.abs(answers(model, X) - y) / spread
             rate = np.clip(share[error > phi].sum(), _FLOOR, 1.0 - _FLOOR)
             beta = rate**self.power
             share = np.where(error > phi, share, beta * share)

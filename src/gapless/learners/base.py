@@ -122,7 +122,48 @@ class OutputByOutput(Learner):
     """
 
     def _predict(self, X: Array) -> Array:
-        return np.column_stack([model.predict(X) for model in self.estimators_])
+        return np.column_stack([answers(model, X) for model in self.estimators_])
+
+
+def answers(model: Any, X: Array) -> Array:
+    """Predictions of a learner within another one, whose inputs were checked once, by that one.
+
+    Parameters
+    ----------
+    model : fitted estimator
+    X : ndarray, shape (n, m)
+
+    Returns
+    -------
+    ndarray, shape (n,) or (n, k)
+        What `predict` gives.
+    """
+    if not isinstance(model, Learner):
+        return np.asarray(model.predict(X))
+    outputs = model._predict(X)
+    return outputs.ravel() if model._flat else outputs
+
+
+def taught(model: Any, X: Array, y: Array, weight: Array | None = None) -> Any:
+    """Fit a learner within another one, by which data and parameters were checked.
+
+    Parameters
+    ----------
+    model : estimator
+    X : ndarray, shape (n, m)
+    y : ndarray, shape (n,)
+    weight : ndarray, shape (n,), optional
+        Positive; for those only that take any.
+
+    Returns
+    -------
+    estimator
+        The same.
+    """
+    if not isinstance(model, Learner):
+        return model.fit(X, y) if weight is None else model.fit(X, y, sample_weight=weight)
+    model.n_features_in_, model.n_outputs_, model._flat = X.shape[1], 1, True
+    return model._fit(X, y[:, None], np.ones(len(y)) if weight is None else weight)
 
 
 def as_good_as(tags: Any, inner: Any) -> Any:

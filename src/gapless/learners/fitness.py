@@ -10,7 +10,7 @@ from sklearn import config_context
 from sklearn.base import clone
 from sklearn.utils.parallel import delayed
 
-from gapless.learners.base import Learner
+from gapless.learners.base import answers, taught
 from gapless.recording import Array
 
 
@@ -61,12 +61,5 @@ def _rms(
 
 
 def _cross_validated(model: Any, parts: list[tuple[Array, Array, Array, Array]]) -> float:
-    errors = [_predicted(model, X, y, X_test) - y_test for X, y, X_test, y_test in parts]
+    errors = [answers(taught(model, X, y), X_test) - y_test for X, y, X_test, y_test in parts]
     return float(np.sqrt(np.mean(np.concatenate(errors) ** 2)))
-
-
-def _predicted(model: Any, X: Array, y: Array, X_test: Array) -> Array:
-    if isinstance(model, Learner):  # twenty thousand fits check the same arrays no more than once
-        return model._fit(X, y[:, None], np.ones(len(y)))._predict(X_test)[:, 0]
-    answer: Array = model.fit(X, y).predict(X_test)
-    return answer

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from importlib import import_module
 from typing import Any, Final, Protocol, Self
 
-from gapless.errors import ConfigError, MissingExtraError
+from gapless.errors import ConfigError, MissingExtraError, registered_elsewhere
 from gapless.recording import Array
 
 LEARNERS: Final[dict[str, str | Callable[[], Any]]] = {
@@ -21,7 +21,7 @@ LEARNERS: Final[dict[str, str | Callable[[], Any]]] = {
     "ls_svr": "gapless.learners.ls_svr.LSSVR",
     "svr": "gapless.learners.svr.MeanLossSVR",
     "ga_svr": "gapless.learners.genetic.ga_svr",
-    "mlp": "gapless.learners.network.mlp",
+    "mlp": "gapless.learners.network.Perceptron",
 }
 """A class or function without arguments, or where to find it. Your own: ``LEARNERS["mine"] = Mine``."""
 
@@ -81,7 +81,7 @@ def _bare(name: str) -> Any:
     if entry is None:
         raise ConfigError(
             f"learner {name!r} is unknown; choose from {', '.join(LEARNERS)}, or a regressor of "
-            "scikit-learn such as sklearn.linear_model.Ridge"
+            f"scikit-learn such as sklearn.linear_model.Ridge{registered_elsewhere()}"
         )
     learner = _made(_found(entry) if isinstance(entry, str) else entry, name)
     from sklearn.base import is_regressor

@@ -31,6 +31,7 @@ CLASSES: Final = {
     "AdaBoostRT": "gapless.learners.adaboost_rt",
     "MeanLossSVR": "gapless.learners.svr",
     "PerOutput": "gapless.learners.per_output",
+    "Perceptron": "gapless.learners.network",
     "GeneticSearchCV": "gapless.learners.genetic",
     "NAR": "gapless.learners.nar",
     "Scaled": "gapless.learners.scaling",
@@ -45,7 +46,12 @@ CLASSES: Final = {
 }
 """Estimators that may be saved, and the module of each."""
 
-TUPLES: Final = {"Weighted": "gapless.learners.adaboost_rt", "Triangle": "gapless.learners.least_squares"}
+TUPLES: Final = {
+    "Weighted": "gapless.learners.adaboost_rt",
+    "Triangle": "gapless.learners.least_squares",
+    "Expansion": "gapless.learners.svr",
+    "Layers": "gapless.learners.network",
+}
 """Named tuples that may be part of one."""
 
 _LEFT_OUT: Final = {"MLPRegressor": {"_random_state", "_optimizer"}}

@@ -14,7 +14,7 @@ from sklearn.preprocessing import MinMaxScaler
 from sklearn.utils.metaestimators import available_if
 from threadpoolctl import ThreadpoolController
 
-from gapless.learners.base import Learner, as_good_as
+from gapless.learners.base import Learner, answers, as_good_as
 from gapless.learners.random_layer import relm
 from gapless.recording import Array
 
@@ -121,6 +121,6 @@ class Scaled(Learner):
         return self.inputs_.transform(X), scaled.ravel() if self._flat else scaled
 
     def _predict(self, X: Array) -> Array:
-        outputs = self.regressor_.predict(self.inputs_.transform(X))
-        answer: Array = self.targets_.inverse_transform(np.reshape(outputs, (len(X), -1)))
+        outputs = answers(self.regressor_, X * self.inputs_.scale_ + self.inputs_.min_)
+        answer: Array = (np.reshape(outputs, (len(X), -1)) - self.targets_.min_) / self.targets_.scale_
         return answer

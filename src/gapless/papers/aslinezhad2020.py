@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Final
 
-from gapless.papers.model import OURS, Claim, Drive, Experiment, Faults, Method, Paper, Window
+from gapless.papers.model import OURS, Drive, Experiment, Faults, Method, Paper, Window
+from gapless.papers.published import Claim
 from gapless.simulate import Receiver
 from gapless.units import DEG
 

@@ -13,7 +13,8 @@ from gapless.evaluation.pairs import pair
 from gapless.evaluation.resampling import Interval, interval, order, resample
 from gapless.papers.experiment import Results
 from gapless.papers.jobs import Sample
-from gapless.papers.model import Claim, Experiment, Published
+from gapless.papers.model import Experiment
+from gapless.papers.published import Claim, Published
 from gapless.recording import Array
 
 YES, NO, OPEN, NOT_RUN = "yes", "NO", "open", "not run"

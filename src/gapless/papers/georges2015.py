@@ -6,7 +6,8 @@ from typing import Final
 
 from numpy.random import Generator
 
-from gapless.papers.model import OURS, Claim, Drive, Experiment, Method, Paper, Window
+from gapless.papers.model import OURS, Drive, Experiment, Method, Paper, Window
+from gapless.papers.published import Claim
 from gapless.simulate import Receiver, Segment
 from gapless.units import DEG
 

@@ -4,18 +4,8 @@ from __future__ import annotations
 
 from typing import Final
 
-from gapless.papers.model import (
-    OURS,
-    Claim,
-    Column,
-    Drive,
-    Experiment,
-    Line,
-    Method,
-    Paper,
-    Published,
-    Window,
-)
+from gapless.papers.model import OURS, Drive, Experiment, Method, Paper, Window
+from gapless.papers.published import Claim, Column, Line, Published
 from gapless.simulate import Receiver
 from gapless.units import DEG
 

@@ -9,16 +9,13 @@ from typing import Any, Final, NamedTuple
 
 from numpy.random import Generator
 
+from gapless.papers.published import Claim, Published
 from gapless.scenarios import Outage
 from gapless.simulate import Receiver, Segment
 from gapless.simulate.drive import HEADING, ORIGIN
 
 OURS: Final = "constraints (ours)"
 """The bar that no paper shows: what every car obeys for free."""
-UNITS: Final = MappingProxyType(
-    {"position": "m", "horizontal": "m", "spatial": "m", "velocity": "m/s", "attitude": "deg"}
-)
-"""Units of measured quantities by the first word of their key."""
 
 
 @dataclass(frozen=True)
@@ -139,90 +136,6 @@ class Drive:
         return tuple(w.outage for w in self.windows if w.withheld)
 
 
-class Column(NamedTuple):
-    """A column of a table.
-
-    Parameters
-    ----------
-    title : str
-    key : str
-        Of what is measured: quantity, axis where there is one, statistic; "position_east_rmse".
-    """
-
-    title: str
-    key: str
-
-    @property
-    def unit(self) -> str:
-        """Its unit."""
-        return UNITS[self.key.split("_")[0]]
-
-
-class Line(NamedTuple):
-    """A row of a published table.
-
-    Parameters
-    ----------
-    where : str
-        Name of a window.
-    method : str
-    values : tuple of float
-        One for each column; NaN where the paper gives none.
-    """
-
-    where: str
-    method: str
-    values: tuple[float, ...]
-
-
-@dataclass(frozen=True)
-class Published:
-    """A table as it was printed.
-
-    Parameters
-    ----------
-    label : str
-        "Table 5".
-    title : str
-    columns : tuple of Column
-    lines : tuple of Line
-    subject : str
-        The paper's own method, which the others are compared with.
-    """
-
-    label: str
-    title: str
-    columns: tuple[Column, ...]
-    lines: tuple[Line, ...]
-    subject: str
-
-
-@dataclass(frozen=True)
-class Claim:
-    """A ratio that a paper states or that its tables give.
-
-    Parameters
-    ----------
-    text : str
-        Where it stands.
-    where : str
-        Name of a window.
-    better, worse : str
-        Methods.
-    key : str
-        Of what is measured.
-    ratio : float
-        Better over worse, as published.
-    """
-
-    text: str
-    where: str
-    better: str
-    worse: str
-    key: str
-    ratio: float
-
-
 @dataclass(frozen=True)
 class Experiment:
     """Methods on a drive, or on real recordings, with what was published of them.
@@ -292,13 +205,6 @@ class Paper:
     studies: tuple[str, ...] = ()
 
 
-RMSE_EN: Final = (
-    Column("vE", "velocity_east_rmse"),
-    Column("vN", "velocity_north_rmse"),
-    Column("pE", "position_east_rmse"),
-    Column("pN", "position_north_rmse"),
-)
-"""East and north velocity and position, RMSE."""
 SAME_CLOCK: Final = MappingProxyType({"clock.position": 0.0, "clock.velocity": 0.0})
 """Simulated sensors share one clock, as the papers' simulations do, and the filter is told so."""
 WHITE: Final = MappingProxyType(

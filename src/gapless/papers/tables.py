@@ -11,7 +11,8 @@ from gapless.laboratory.tables import Table
 from gapless.papers.compare import NOT_RUN, VERDICTS, Ranking, Ratio, beside, mean, rankings, ratios
 from gapless.papers.experiment import Reproduction, Results
 from gapless.papers.liu2019 import CHANNELS, SNR
-from gapless.papers.model import Column, Published, Window
+from gapless.papers.model import Window
+from gapless.papers.published import Column, Published
 from gapless.papers.studies import Signals
 
 DASH: Final = "-"

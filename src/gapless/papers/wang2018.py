@@ -7,20 +7,8 @@ from dataclasses import replace
 from types import MappingProxyType
 from typing import Any, Final
 
-from gapless.papers.model import (
-    OURS,
-    RMSE_EN,
-    Claim,
-    Column,
-    Drive,
-    Experiment,
-    Line,
-    Method,
-    Paper,
-    Published,
-    Start,
-    Window,
-)
+from gapless.papers.model import OURS, Drive, Experiment, Method, Paper, Start, Window
+from gapless.papers.published import RMSE_EN, Claim, Column, Line, Published
 from gapless.simulate import Receiver
 from gapless.units import DEG
 

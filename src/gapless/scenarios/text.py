@@ -31,6 +31,9 @@ _EFFECT: Final = (
     f"write effect={'|'.join(k for k in KINDS if k != 'real')} or with a size and a seed, effect=noisy:10:1"
 )
 
+_CLOSEST: Final = 1.0
+"""Outages of a plan start no closer to each other [s]: there would be no end to them."""
+
 
 def parse(text: str) -> Plan:
     """Read one plan.
@@ -134,6 +137,8 @@ def _spaced(
     distance, length, first = (_number(text, values[key], form) for key in (every, "length", "first"))
     if min(distance, length) <= 0.0:
         _refuse(text, f"{every} and length must be above zero", form)
+    if distance < _CLOSEST:
+        _refuse(text, f"{every} is less than {_CLOSEST:g} s", form)
     if length > distance:
         _refuse(text, f"outages overlap, length is more than {every}", form)
     return distance, length, first

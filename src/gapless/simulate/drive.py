@@ -26,6 +26,8 @@ ORIGIN = (32.05 * DEG, 118.79 * DEG, 20.0)
 """Where a drive begins if nothing is said: latitude, longitude [rad], height [m]; that of wang2018."""
 HEADING = 45.0 * DEG
 """Its first heading [rad]."""
+LONGEST = 86_400.0
+"""A drive lasts no longer [s]: a day of it fills some gigabytes."""
 ROLL_GRADIENT = 0.007
 """Roll of a passenger car out of a turn [rad / (m/s^2)], four degrees per g."""
 
@@ -63,10 +65,12 @@ def drive(
     Raises
     ------
     ConfigError
-        If the profile is unknown or the duration is not positive.
+        If the profile is unknown, or the duration is not positive or more than a day.
     """
-    if not 0.0 < duration < float("inf"):
-        raise ConfigError(f"a drive cannot last {duration:g} s; give a positive duration")
+    if not 0.0 < duration <= LONGEST:
+        raise ConfigError(
+            f"a drive cannot last {duration:g} s; give a positive duration of at most {LONGEST:g} s"
+        )
     chance = _streams(seed)[0]
     segments = (
         named_profile(profile)(duration, chance) if isinstance(profile, str) else fit(profile, duration)
@@ -126,12 +130,19 @@ def simulate(
     Raises
     ------
     ConfigError
-        If the profile or the grade is unknown or the duration is not positive.
+        If the profile or the grade is unknown, the duration is not positive, too short for two IMU samples
+        or more than a day, or a delay or an angle is not finite.
     """
+    _check_finite(vehicle, receiver)
     budget = named_grade(grade) if isinstance(grade, str) else grade
     path = drive(profile, duration, seed, origin=origin, heading=heading)
     _, of_imu, of_receiver, of_wheels, of_chassis = _streams(seed)
-    true = increments(path, rate or budget.rate, vehicle)
+    rate = rate or budget.rate
+    true = increments(path, rate, vehicle)
+    if len(true.time) < 2:
+        raise ConfigError(
+            f"a drive of {path.duration:g} s has no two IMU samples at {rate:g} Hz; make it longer"
+        )
     if chassis is not None:
         true = vibrate(true, path, chassis, of_chassis, vehicle)
         budget = replace(budget, gyro_vibration=0.0, accel_vibration=0.0)
@@ -149,6 +160,14 @@ def simulate(
         vehicle.lever_arm,
         budget.name,
     )
+
+
+def _check_finite(vehicle: Vehicle, receiver: Receiver) -> None:
+    delays = receiver.position_delay, receiver.velocity_delay
+    for name, values in (("mounting", vehicle.mounting), ("receiver's delay", delays)):
+        if not np.isfinite(values).all():
+            told = ", ".join(f"{value:g}" for value in values)
+            raise ConfigError(f"the {name} cannot be {told}; give finite numbers")
 
 
 def _streams(seed: int) -> list[Generator]:

@@ -26,7 +26,7 @@ from gapless.systems.recipe import System
 from gapless.systems.values import Positive
 
 Name = Annotated[str, Meta(pattern=r"^[A-Za-z0-9][A-Za-z0-9._-]*$")]
-Seed = Annotated[int, Meta(ge=0)]
+Seed = Annotated[int, Meta(ge=0, le=2**63 - 1)]
 Texts = str | tuple[str, ...]
 Drive = tuple[Simulated | Logged, int]
 Method = tuple[System, dict[str, Any], bool]

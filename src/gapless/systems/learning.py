@@ -4,20 +4,21 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from contextlib import suppress
 from inspect import signature
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Final, Literal
 
 import numpy as np
-from msgspec import Struct
+from msgspec import Meta, Struct
 
-from gapless.errors import ConfigError
+from gapless.errors import ConfigError, MissingExtraError, registered_elsewhere
 from gapless.systems.values import Count, NonNegative, Positive, WholeNumber
 
 if TYPE_CHECKING:
     from gapless.bridges.base import Bridge
-    from gapless.bridges.learned import Trained
     from gapless.bridges.model import Model
+    from gapless.bridges.schedule import Trained
     from gapless.measurements.base import Sensor
 
 MODELS: Final = ("error", "increment")
@@ -60,7 +61,7 @@ class LearnerUse(Struct, forbid_unknown_fields=True, frozen=True):
     """
 
     name: str = "rvfl"
-    seed: WholeNumber = 0
+    seed: Annotated[int, Meta(ge=0, lt=2**32)] = 0
     parameters: dict[str, Any] = {}
     model: str = ""
 
@@ -82,17 +83,18 @@ def check(use: BridgeUse) -> None:
     from gapless.bridges import BRIDGES
     from gapless.bridges.epochs import FEATURES
 
+    hint = registered_elsewhere()
     if use.model in BRIDGES:
         _check_own(use, list(signature(BRIDGES[use.model]).parameters)[1:])
         return
     if use.model not in MODELS:
         choices = ", ".join(("none", *MODELS, *BRIDGES))
-        raise ConfigError(f"bridge.model: {use.model!r} is unknown; choose from {choices}")
+        raise ConfigError(f"bridge.model: {use.model!r} is unknown; choose from {choices}{hint}")
     if use.parameters:
         raise ConfigError(f"bridge.parameters are for bridges of your own; {use.model} has none")
     unknown = [name for name in use.features if name not in FEATURES]
     if unknown:
-        raise ConfigError(f"bridge.features has {unknown[0]!r}; choose from {', '.join(FEATURES)}")
+        raise ConfigError(f"bridge.features has {unknown[0]!r}; choose from {', '.join(FEATURES)}{hint}")
     if not use.features and not use.window:
         raise ConfigError("bridge shows its learner nothing; give bridge.features or bridge.window")
     if use.model == "increment" and (use.window or use.lags > 1):
@@ -101,6 +103,29 @@ def check(use: BridgeUse) -> None:
         raise ConfigError("bridge.learns is empty; name position, velocity or both")
     if use.model == "error" and use.reference == "gnss" and "attitude" in use.learns:
         raise ConfigError('GNSS shows no attitude; learn it with bridge.reference = "filter"')
+
+
+def check_learner(use: BridgeUse, who: LearnerUse) -> None:
+    """See that a learner is one that can be made; where scikit-learn is missing, `bridges` says so.
+
+    Parameters
+    ----------
+    use : BridgeUse
+    who : LearnerUse
+
+    Raises
+    ------
+    ConfigError
+        If there is no such learner, or it has no such parameters.
+    """
+    if use.model not in MODELS:
+        return
+    from gapless.learners import LEARNERS, make
+
+    if who.name in LEARNERS and not who.parameters:
+        return  # nothing that could be wrong: built-in recipes are listed without importing scikit-learn
+    with suppress(MissingExtraError):
+        make(who.name, who.parameters, who.seed)
 
 
 def _check_own(use: BridgeUse, known: list[str]) -> None:
@@ -137,16 +162,18 @@ def bridges(
     Raises
     ------
     ConfigError
-        If there is no such learner, or what it needs is not installed.
+        If there is no such bridge, feature or learner in this process, or what it needs is not installed.
     """
     if use.model == "none":
         return ()
+    check(use)  # a recipe may have been read by another process, with registries of its own
     from gapless.bridges import BRIDGES
 
     if use.model in BRIDGES:
         return (BRIDGES[use.model](sensors, **use.parameters),)
-    from gapless.bridges.learned import LearnedBridge, Schedule
+    from gapless.bridges.learned import LearnedBridge
     from gapless.bridges.noise import CalibratedNoise, FilterNoise
+    from gapless.bridges.schedule import Schedule
     from gapless.bridges.shadow import Shadow
     from gapless.learners import make
 
@@ -173,8 +200,8 @@ def _saved(path: str, model: Model, use: BridgeUse) -> Trained | None:
     if not path:
         return None
     from gapless.bridges.epochs import unknown
-    from gapless.bridges.learned import Trained
     from gapless.bridges.noise import FilterNoise
+    from gapless.bridges.schedule import Trained
     from gapless.learners.saved import loads
 
     if use.noise == "calibrated":

@@ -18,6 +18,7 @@ from gapless.filters.adaptation.registry import KINDS
 from gapless.filters.adaptation.registry import check as check_rules
 from gapless.inertial.layout import EXTRAS
 from gapless.systems.learning import check as check_bridge
+from gapless.systems.learning import check_learner
 from gapless.systems.prepare import denoiser
 from gapless.systems.recipe import System
 
@@ -112,6 +113,7 @@ def _check(system: System) -> None:
     for kind in KINDS:
         check_rules(kind, getattr(system.adaptation, kind))
     check_bridge(system.bridge)
+    check_learner(system.bridge, system.learner)
     denoiser(system.denoise)
 
 

@@ -6,7 +6,7 @@ import inspect
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from gapless.errors import ConfigError
+from gapless.errors import ConfigError, registered_elsewhere
 from gapless.recording import Imu, Recording
 from gapless.solution import Decision
 from gapless.systems.recipe import DenoiseUse, System
@@ -73,6 +73,7 @@ def denoiser(use: DenoiseUse) -> Denoiser | None:
     if use.method not in DENOISERS:
         raise ConfigError(
             f"denoise.method: {use.method!r} is unknown; choose from none, {', '.join(DENOISERS)}"
+            f"{registered_elsewhere()}"
         )
     kind = DENOISERS[use.method]
     known = list(inspect.signature(kind).parameters)

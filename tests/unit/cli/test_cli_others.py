@@ -136,3 +136,21 @@ def test_verbs_live_in_files_of_their_name(name):
     from importlib import import_module
 
     assert import_module(f"gapless.cli.{name}").__dict__[name].name == name
+
+
+@pytest.mark.parametrize(
+    ("words", "cure"),
+    [
+        (("--duration", 0.001), "no two IMU samples"),
+        (("--duration", "nan"), "give a positive duration"),
+        (("--duration", 1e12), "of at most 86400 s"),
+        (("--duration", 20, "--late", "nan"), "give finite numbers"),
+        (("--duration", 20, "--mounting", "nan", 0, 0), "give finite numbers"),
+    ],
+)
+def test_a_drive_that_cannot_be_is_refused_in_one_line(shell, tmp_path, words, cure):
+    said = shell("simulate", *words, "--out", tmp_path / "a", code=2)
+    assert said.stderr.startswith("gapless: ")
+    assert said.stderr.count("\n") == 1
+    assert cure in said.stderr
+    assert list(tmp_path.iterdir()) == []

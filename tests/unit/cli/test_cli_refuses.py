@@ -22,6 +22,8 @@ REFUSED = {
     "clock without a number": (["{drive}", "--clock", "position"], "write it like position=-0.15"),
     "clock far off": (["{drive}", "--clock", "position=20"], "clock offset of position, 20 s"),
     "rate beyond the ticks": (["{drive}", "--rate", "400"], "--rate 400"),
+    "rate that is no number": (["{drive}", "--rate", "nan"], "--rate nan"),
+    "outages without end": (["{drive}", "--outages", "every=1e-9,length=1e-10,first=1"], "less than 1 s"),
     "mounting of no state": (["{drive}", "--system", "ins", "--vehicle"], "no mounting angles"),
 }
 

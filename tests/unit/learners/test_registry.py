@@ -33,6 +33,45 @@ def test_any_regressor_of_scikit_learn():
     assert forest.random_state == 9
 
 
+OWN = """
+import sys
+from concurrent.futures import ProcessPoolExecutor
+from multiprocessing import get_context
+from gapless.learners import LEARNERS
+from gapless.learners.random_layer import relm
+from gapless.systems.library import parse
+
+LEARNER = "like = 'wang2018'\\n[learner]\\nname = 'mine'"
+RECIPES = LEARNER, "[bridge]\\nmodel = 'mine'", "[denoise]\\nmethod = 'mine'"
+
+def tried(text):
+    try:
+        return parse(text, "my.toml").learner.name
+    except Exception as error:
+        return str(error)
+
+if "top" in sys.argv:
+    LEARNERS["mine"] = relm
+if __name__ == "__main__":
+    LEARNERS["mine"] = relm
+    with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as pool:
+        print(*pool.map(tried, RECIPES), sep="\\n")
+"""
+
+
+@pytest.mark.parametrize(("where", "known"), [("top", True), ("guarded", False)])
+def test_worker_processes_know_what_a_script_registers_at_its_top(tmp_path, where, known):
+    script = tmp_path / "mine.py"
+    script.write_text(OWN)
+    done = subprocess.run([sys.executable, script, where], capture_output=True, text=True, check=True)
+    learner, *others = done.stdout.splitlines()
+    assert (learner == "mine") is known
+    hint = 'registered at the top of your script, outside of if __name__ == "__main__"'
+    for line in others if known else (learner, *others):
+        assert "'mine' is unknown; choose from" in line
+        assert hint in line
+
+
 def test_a_learner_of_ones_own(monkeypatch):
     monkeypatch.setitem(LEARNERS, "mine", lambda: Ridge(alpha=0.0))
     x = np.arange(12.0).reshape(6, 2) ** 2

@@ -1,17 +1,7 @@
 from dataclasses import replace
 
-from gapless.papers.model import (
-    Claim,
-    Column,
-    Drive,
-    Experiment,
-    Line,
-    Method,
-    Paper,
-    Published,
-    Start,
-    Window,
-)
+from gapless.papers.model import Drive, Experiment, Method, Paper, Start, Window
+from gapless.papers.published import Claim, Column, Line, Published
 from gapless.simulate import Receiver
 from gapless.units import DEG
 

@@ -13,7 +13,7 @@ from gapless.evaluation.resampling import Interval
 from gapless.papers.compare import NO, NOT_RUN, OPEN, YES, beside, claims_of, mean, rankings, ratios, verdict
 from gapless.papers.experiment import Results
 from gapless.papers.jobs import Sample
-from gapless.papers.model import Claim
+from gapless.papers.published import Claim
 
 KEYS = ("position_east_rmse", "position_north_rmse", "horizontal_max")
 

@@ -1,3 +1,4 @@
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -107,7 +108,26 @@ def test_segments_and_grades_of_ones_own():
     assert_allclose(np.linalg.norm(r.reference.v_n[-1]), 3.0, atol=1e-12)
 
 
-@pytest.mark.parametrize("duration", [0.0, -5.0, float("nan"), float("inf")])
+@pytest.mark.parametrize("duration", [0.0, -5.0, math.nan, math.inf, 1e12])
 def test_a_drive_needs_a_duration(duration):
-    with pytest.raises(ConfigError, match="positive duration"):
+    with pytest.raises(ConfigError, match="positive duration of at most 86400 s"):
         simulate(duration=duration)
+
+
+@pytest.mark.parametrize("duration", [1e-3, 0.01])
+def test_a_drive_needs_two_samples(duration):
+    with pytest.raises(ConfigError, match="no two IMU samples at 100 Hz; make it longer"):
+        simulate(duration=duration)
+
+
+@pytest.mark.parametrize(
+    ("what", "words"),
+    [
+        ({"receiver": Receiver(position_delay=math.nan)}, "receiver's delay cannot be nan, 0"),
+        ({"receiver": Receiver(velocity_delay=math.inf)}, "receiver's delay cannot be 0, inf"),
+        ({"vehicle": Vehicle(mounting=(0.0, math.nan, 0.0))}, "mounting cannot be 0, nan, 0"),
+    ],
+)
+def test_delays_and_angles_are_finite(what, words):
+    with pytest.raises(ConfigError, match=words):
+        simulate(duration=5.0, **what)

@@ -12,6 +12,13 @@ from gapless.systems.library import load, names, parse
 from gapless.systems.recipe import System
 
 
+def test_a_learner_that_is_wrong_is_named_with_its_file(tmp_path):
+    path = tmp_path / "mine.toml"
+    path.write_text("like = 'wang2018'\n[learner]\nname = 'elmo'\n")
+    with pytest.raises(ConfigError, match=re.escape(f"{path}: learner 'elmo' is unknown; choose from elm, ")):
+        load(path)
+
+
 def refused(text):
     with pytest.raises(ConfigError) as caught:
         parse(text, "my.toml")
@@ -45,6 +52,14 @@ def refused(text):
         ("[adaptation]\ngnss = ['gat']", ["adaptation.gnss", "'gat'", *RULES]),
         ("[adaptation]\nbridge = ['sage_husa', 'variational']", ["adaptation.bridge", "both estimate R"]),
         ("[adaptation.igg3]\nkeep = 9.0", ["adaptation.igg3", "drop = 5", "keep = 9"]),
+        (
+            "like = 'wang2018'\n[learner]\nname = 'elmo'",
+            ["learner 'elmo'", "elm, fourier_elm", "sklearn.linear"],
+        ),
+        ("like = 'wang2018'\n[learner]\nname = 'sklearn.svm.SRV'", ["sklearn.svm.SRV", "check its path"]),
+        ("[learner]\nseed = 4294967296", ["learner.seed", "4294967295"]),
+        ("like = 'wang2018'\n[learner.parameters]\nnods = 3", ["learner 'fourier_elm'", "'nods'", "n_nodes"]),
+        ("like = 'wang2018'\n[learner]\nparameters = {n_nodes = 0}", ["learner 'fourier_elm'", "n_nodes"]),
         ("[adaptation.fading]\nfactr = 1.1", ["factr", "adaptation.fading", "factor"]),
     ],
 )
