@@ -93,21 +93,3 @@ def inline(function: F) -> F:
     """Let kernels call a plain Python function, which stays one for Python."""
     inlined: F = register_jitable(forceinline=True)(function)
     return inlined
-
-
-def inlined(compiled: F) -> F:
-    """The function of a kernel as a part of other kernels.
-
-    A kernel that called it as it is would get the bits of whichever copy of it was loaded first.
-
-    Parameters
-    ----------
-    compiled : callable
-        From `kernel`.
-
-    Returns
-    -------
-    callable
-        See `inline`.
-    """
-    return inline(cast(F, vars(compiled)["py_func"]))

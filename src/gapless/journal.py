@@ -11,7 +11,6 @@ import numpy as np
 from gapless import attitude
 from gapless.inertial.belief import Belief
 from gapless.inertial.layout import ROW, Layout
-from gapless.measurements.coast import SHARED, SIZES, SOURCES, STATE
 from gapless.recording import Array, Trajectory
 from gapless.solution import Innovations
 
@@ -46,7 +45,7 @@ class Journal:
         self._unseen = np.zeros(layout.n + len(cross))
         for name in ("attitude", "mounting"):
             self._unseen[layout.blocks.get(name, slice(0))] = misalignment**2
-        self.kept = np.array([i * ROW + j for i, j in [*((i, i) for i in range(layout.n)), *cross]])
+        self._kept = np.array([i * ROW + j for i, j in [*((i, i) for i in range(layout.n)), *cross]])
         self.last = -math.inf
         self.times: list[float] = []
         self.states: list[Array] = []
@@ -75,47 +74,9 @@ class Journal:
         self.last = time
         self.times.append(time)
         self.states.append(belief.estimate().copy())
-        self.variances.append(belief.p[self.kept])
+        self.variances.append(belief.p[self._kept])
         self.shared.append(shared)
         self.sources.append(source)
-
-    def rows(self, rows: Array) -> None:
-        """Write down what `coast` wrote: rows later than the last one.
-
-        Parameters
-        ----------
-        rows : ndarray
-            Not to be changed later.
-        """
-        if not len(rows):
-            return
-        self.last = float(rows[-1, 0])
-        self.times += rows[:, 0].tolist()
-        self.sources += [SOURCES[held] for held in rows[:, 1].astype(int).tolist()]
-        self.shared += list(rows[:, SHARED:STATE].reshape(-1, 3, 3))
-        end = STATE + self.layout.n + 1
-        self.states += list(rows[:, STATE:end])
-        self.variances += list(rows[:, end:])
-
-    def passed(self, channel: str, found: Array) -> None:
-        """Write innovations down that `coast` wrote: they counted as stated.
-
-        Parameters
-        ----------
-        channel : str
-        found : ndarray
-            Not to be changed later.
-        """
-        if not len(found):
-            return
-        m = SIZES[channel]
-        c = self.channels.setdefault(channel, _Channel())
-        c.time += found[:, 0].tolist()
-        c.nis += found[:, 1].tolist()
-        c.z += list(found[:, 2 : 2 + m])
-        c.s += list(found[:, 2 + m : 2 + m + m * m].reshape(-1, m, m))
-        c.factor += [1.0] * len(found)
-        self.latest[channel] = c.time[-1]
 
     def innovation(self, channel: str, time: float, z: Array, s: Array, nis: float, factor: float) -> None:
         """Write an innovation down.
@@ -216,7 +177,7 @@ class Journal:
 
     def _stated(self) -> Array:
         """Variances with what the filter does not know of: what fixes share, how the box is turned."""
-        var = np.array(self.variances).reshape(-1, len(self.kept)) + self._unseen
+        var = np.array(self.variances).reshape(-1, len(self._kept)) + self._unseen
         shared = np.array(self.shared).reshape(-1, 3, 3)
         var[:, :3] += np.diagonal(shared, axis1=1, axis2=2)
         var[:, self.layout.n] += shared[:, 0, 1]

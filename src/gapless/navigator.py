@@ -9,16 +9,20 @@ import numpy as np
 
 from gapless import earth
 from gapless.alignment.coarse import Start
+from gapless.assimilate import assimilate
 from gapless.bridges.base import Bridge
-from gapless.events import EPS, Event, ImuBlock, Reading
+from gapless.events import EPS, Event, ImuBlock, Motion, Reading
 from gapless.filters.consider import Wander
 from gapless.inertial import propagate as at
 from gapless.inertial.belief import Belief, inject
+from gapless.inertial.cubature import propagate_points
 from gapless.inertial.pieces import GAP, pieces, without_holes
+from gapless.journal import Journal
 from gapless.manner import Manner
+from gapless.measurements.base import Observation
 from gapless.settings import Settings
 from gapless.state import Past, State
-from gapless.ticks import Ticking
+from gapless.tape import Tape
 from gapless.units import DEG
 
 __all__ = ["Navigator", "Settings"]
@@ -29,15 +33,27 @@ def load_kernels() -> None:
     inject(np.array([0.0] * 6 + [1.0] + [0.0] * 9), np.zeros(15))
 
 
-class Navigator(Ticking):
+class Navigator:
     """Folds time-ordered events over a belief.
 
     Parameters
     ----------
     settings : Settings
+
+    Attributes
+    ----------
+    journal : Journal
+        Rows and innovations so far.
+    tape : Tape or None
+        Where a smoother listens; no part of a snapshot.
+    keeps_learning : bool
+        Whether bridges that are not listened to are asked all the same, and so go on learning; a copy
+        that runs ahead and is thrown away saves their time.
     """
 
     def __init__(self, settings: Settings) -> None:
+        self.settings = settings
+        self.journal = Journal(settings.layout, settings.misalignment)
         belief = Belief(settings.layout, settings.open_loop, settings.trail)
         constraints = {name: c.copy() for name, c in settings.constraints.items()}
         bridges = [bridge.copy() for bridge in settings.bridges]
@@ -45,10 +61,12 @@ class Navigator(Ticking):
         rules = {kind: rule.copy() for kind, rule in settings.adaptation.items()}
         aligner = settings.aligner.copy()
         manner = settings.manner
-        state = State(belief, rules, constraints, bridges, aligner, wander, manner.noise, manner)
-        super().__init__(settings, state)
+        self._state = State(belief, rules, constraints, bridges, aligner, wander, manner.noise, manner)
         self._past = Past(settings.lateness)
+        self._propagate = propagate_points if settings.cubature else at.propagate
         self.dropped = 0
+        self.tape: Tape | None = None
+        self.keeps_learning = True
 
     @property
     def belief(self) -> Belief:
@@ -98,9 +116,8 @@ class Navigator(Ticking):
             `Settings.lateness`.
         """
         if isinstance(event, ImuBlock):
-            for part in self._past.parts(event):
-                self._past.before(self._state, part)
-                self._feel(part)
+            self._past.before(self._state, event)
+            self._feel(event)
         elif event:
             self._hear(event)
 
@@ -207,6 +224,46 @@ class Navigator(Ticking):
                 if piece.due:
                     self._apply_due()
 
+    def _run(self, block: ImuBlock, first: int, last: int, due: bool) -> None:
+        """Propagate samples first..last-1, ticking on the way; `due`: an observation waits there."""
+        s, state = self.settings, self._state
+        if state.aligner is not None:
+            rows = np.column_stack([block.time, block.dt, block.dtheta, block.dvel])[first:last]
+            state.aligner.feel(float(block.time[last - 1]), rows)
+        if not state.aligned:
+            state.clock = float(block.time[last - 1])
+            return
+        if state.bridges and last > first:
+            felt = block.rows(first, last)
+            for bridge in state.bridges:
+                bridge.feel(felt)
+        b, often = state.belief, s.row < s.tick
+        if state.fade > 1.0:  # the epoch is over
+            b.fade(state.fade, s.ceiling)
+            state.fade = 1.0
+        while first < last:
+            end = self._next_row(block, first, last) if often else last
+            flush = due and end == last
+            first = self._propagate(
+                b.x, b.memory, s.layout.width, b.p, b.scratch, b.error, s.layout.offsets, state.noise,
+                block.time, block.dt, block.dtheta, block.dvel, first, end, s.period, s.tick, flush,
+            )  # fmt: skip
+            state.clock = float(block.time[first - 1])
+            if self.tape is not None and b.memory[at.COV_DT] == 0.0:
+                self.tape.stepped(b)
+            ticked = b.memory[at.TICK_DT] >= s.tick - at.ROUND
+            if ticked or (due and first == last):  # never at a block's end: blocks change no bits
+                b.trail.mark(state.clock, b.v_n)
+            if ticked:
+                self._tick()
+            elif often:
+                self._row()
+
+    def _next_row(self, block: ImuBlock, first: int, last: int) -> int:
+        """Sample after which a row is due, where rows come more often than ticks."""
+        rows = block.time[first:last]
+        return min(last, first + int(np.searchsorted(rows, self._state.next_row - EPS)) + 1)
+
     def _gap(self, begin: float) -> None:
         """The IMU was silent: little is known of the motion; what is constant is kept.
 
@@ -224,6 +281,48 @@ class Navigator(Ticking):
             if self.tape is not None:
                 self.tape.forgot(everything=False)
         state.clock = begin
+
+    def _tick(self) -> None:
+        state, m = self._state, self._state.belief.memory
+        dt = float(m[at.TICK_DT])
+        motion = Motion(state.clock, dt, m[at.TICK_W :] / dt)
+        m[at.TICK_DT :] = 0.0
+        for name, constraint in state.constraints.items():
+            observation = constraint.tick(state.belief, motion)
+            if observation is None or (state.aligner is not None and constraint.needs_heading):
+                continue
+            if self._update(name, motion.time, observation):
+                state.heard[name] = motion.time
+        for k, bridge in enumerate(state.bridges):
+            heeded = k in state.manner.voices
+            if heeded or self.keeps_learning:
+                for channel, said in bridge.tick(state.belief, motion):
+                    if heeded and self._update(channel, motion.time, said):
+                        state.heard["bridge"] = motion.time
+        self._row()
+
+    def _row(self) -> None:
+        """Write a row where one is due; it changes nothing of the belief."""
+        state, often = self._state, self.settings.row
+        if state.clock >= state.next_row - EPS:
+            state.next_row = max(state.next_row + often, state.clock + 0.5 * often)
+            source, shared = self._source(), state.wander.response
+            if source != "gnss" and state.manner.scale != 1.0:
+                shared = shared + (state.manner.scale - 1.0) * state.belief.P[:3, :3]
+            row = state.clock, state.belief, shared, source
+            self.journal.row(*row)
+            if self.tape is not None:
+                self.tape.row(*row)
+
+    def _source(self) -> str:
+        heard, now = self._state.heard, self._state.clock
+        if now - max(heard.get("position", -math.inf), heard.get("velocity", -math.inf)) < 1.6:
+            return "gnss"
+        if now - heard.get("bridge", -math.inf) < 1.6:
+            return "bridge"
+        if any(now - heard.get(name, -math.inf) < 1.0 for name in (*self._state.constraints, "odometer")):
+            return "constraints"
+        return "ins"
 
     # --- belief ---------------------------------------------------------------------------------
 
@@ -254,3 +353,6 @@ class Navigator(Ticking):
         state.aligner, state.aligned = None, True
         state.next_row = max(state.next_row, state.clock)
         self.journal.align(state.clock, start.evidence)
+
+    def _update(self, channel: str, time: float, o: Observation) -> bool:
+        return assimilate(self._state, self.settings, channel, time, o, self.journal, self.tape)

@@ -6,8 +6,6 @@ import bisect
 import math
 from dataclasses import dataclass, field
 
-import numpy as np
-
 from gapless.alignment.coarse import Aligner
 from gapless.bridges.base import Bridge
 from gapless.events import Event, ImuBlock, Reading
@@ -115,21 +113,6 @@ class Past:
     def __init__(self, lateness: float) -> None:
         self.lateness = lateness
         self.entries: list[tuple[State, list[Event]]] = []
-
-    def parts(self, block: ImuBlock) -> list[ImuBlock]:
-        """A block cut where a reading that comes with its end may hold: no more is run twice than must be.
-
-        Parameters
-        ----------
-        block : ImuBlock
-
-        Returns
-        -------
-        list of ImuBlock
-        """
-        n = len(block.time)
-        cut = int(np.searchsorted(block.time, block.time[-1] - self.lateness)) if self.lateness else 0
-        return [block.rows(0, cut), block.rows(cut, n)] if 0 < cut < n else [block]
 
     def before(self, state: State, block: ImuBlock) -> None:
         """Keep the state that a block is about to change, and the block.

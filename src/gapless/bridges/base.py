@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import ClassVar, NamedTuple, Protocol, Self
 
 from gapless.events import ImuBlock, Motion, Reading
@@ -36,8 +35,6 @@ class Bridge(Protocol):
     ----------
     reach : float
         Seconds of past velocity that the belief's trail must hold for it.
-    due : float, may be left out
-        It need not be told of ticks that end before this time [s].
     """
 
     reach: ClassVar[float]
@@ -133,18 +130,3 @@ class Bridge(Protocol):
         Bridge
         """
         ...
-
-
-def due_of(bridge: Bridge) -> float:
-    """When a bridge wants to be told of a tick: of every one, where it does not say.
-
-    Parameters
-    ----------
-    bridge : Bridge
-
-    Returns
-    -------
-    float
-        [s]
-    """
-    return float(getattr(bridge, "due", -math.inf))

@@ -36,52 +36,6 @@ TINY: Final = 1e-12
 
 
 @kernel
-def rates(time: Array, dt: Array, dtheta: Array, dvel: Array, begin: float, end: float) -> Array:
-    """Samples as `warp` takes them.
-
-    Parameters
-    ----------
-    time, dt, dtheta, dvel : ndarray, shape (k,), (k,), (k, 3), (k, 3)
-        As in `ImuBlock`.
-    begin, end : float
-        Only those whose middle is not before this, and which end no later than this [s].
-
-    Returns
-    -------
-    ndarray, shape (m, 7)
-    """
-    first, last = 0, np.searchsorted(time, end, side="right")
-    while first < last and time[first] - 0.5 * dt[first] < begin:
-        first += 1
-    out = np.empty((last - first, 1 + CHANNELS))
-    for i in range(first, last):
-        out[i - first, 0] = time[i] - 0.5 * dt[i]
-        for c in range(3):
-            out[i - first, 1 + c], out[i - first, 4 + c] = dtheta[i, c] / dt[i], dvel[i, c] / dt[i]
-    return out
-
-
-@kernel
-def pace(samples: Array) -> tuple[float, float]:
-    """Median and largest distance of samples in time.
-
-    Parameters
-    ----------
-    samples : ndarray, shape (k, 7)
-        At least two.
-
-    Returns
-    -------
-    median, largest : float
-        [s]
-    """
-    gaps = samples[1:, 0] - samples[:-1, 0]
-    gaps.sort()
-    k = gaps.size
-    return 0.5 * (gaps[(k - 1) // 2] + gaps[k // 2]), gaps[k - 1]
-
-
-@kernel
 def warp(samples: Array, times: Array, speeds: Array, begin: float, end: float, n: int) -> Array:
     """Signals over a time in which the speed is constant, with a Hann window on them.
 

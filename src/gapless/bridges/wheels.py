@@ -20,7 +20,7 @@ from gapless.bridges.comb import Memory
 from gapless.bridges.combs import Combs
 from gapless.bridges.course import Course, Drift
 from gapless.bridges.mean_speed import mean_speed
-from gapless.bridges.orders import LOWEST, ORDERS, STEP, WINDOW, Spectrum, pace, rates, spectrum
+from gapless.bridges.orders import LOWEST, ORDERS, STEP, WINDOW, Spectrum, spectrum
 from gapless.bridges.peak import Peak, Trust, peak
 from gapless.bridges.slip import Hold
 from gapless.bridges.vehicle import recalled
@@ -192,15 +192,15 @@ class Wheels:
         rows = self._samples(time - WINDOW - ROOM, time)
         if len(rows) < 3:
             return None
-        gap, longest = pace(rows)
-        self.rate = 1.0 / gap
+        self.rate = 1.0 / float(np.median(np.diff(rows[:, 0])))
         times, gained = belief.trail.behind(WINDOW)
         if len(times) < 10 or times[0] > time - WINDOW or times[-1] < time - 1e-3:
             return None
         speeds = np.linalg.norm(belief.estimate()[3:6] + gained, axis=1)
         if speeds.min() < CRAWL:
             return None
-        if self.rate < RATE - 0.5 or longest > 0.2 or rows[0, 0] > time - WINDOW:
+        gaps = np.diff(rows[:, 0])
+        if self.rate < RATE - 0.5 or gaps.max() > 0.2 or rows[0, 0] > time - WINDOW:
             return None
         return spectrum(rows, times, speeds, time, 0.5 * self.rate - 3.0)
 
@@ -210,12 +210,11 @@ class Wheels:
             self.felt.pop(0)
         if not self.felt:
             return np.zeros((0, 7))
-        if len(self.felt) > 1:
-            self.felt = [ImuBlock.join(self.felt)]
-        block = self.felt[0]  # it goes ahead of the tick
-        kept = block.rows(int(np.searchsorted(block.time, begin)), len(block.time))
-        self.felt = [kept]
-        return rates(*kept, begin, end)
+        block = ImuBlock.join(self.felt)
+        block = block.rows(0, int(np.searchsorted(block.time, end, side="right")))  # felt goes ahead
+        dt = block.dt[:, None]
+        rows = np.column_stack([block.time - 0.5 * block.dt, block.dtheta / dt, block.dvel / dt])
+        return rows[np.searchsorted(rows[:, 0], begin) :]
 
     def _learn(self, belief: Belief, heard: Spectrum, time: float) -> None:
         if heard.speed < TAUGHT or speed_sd(belief) > SURE:
@@ -223,7 +222,7 @@ class Wheels:
         memory = self.memory or Memory.empty(heard.top)
         self.memory, self.combs = memory.after(heard), None
         v = belief.estimate()[3:6]
-        self.drift = self.drift.after(time, v / np.linalg.norm(v), belief.trail.corrected.copy())
+        self.drift = self.drift.after(time, v / np.linalg.norm(v), belief.trail.corrected)
 
     def _speak(self, belief: Belief, heard: Spectrum, time: float) -> tuple[Saying, ...]:
         if self.memory is None or self.memory.windows < self.least:
@@ -244,7 +243,7 @@ class Wheels:
 
     def _follow(self, belief: Belief, time: float) -> None:
         """The inertial course through this silence."""
-        v, corrected = belief.estimate()[3:6], belief.trail.corrected.copy()
+        v, corrected = belief.estimate()[3:6], belief.trail.corrected
         if self.course is None or self.course.begun < self.fixed:
             before = self.hold.windows if self.hold else 0.0
             self.course = Course(time, corrected, time)

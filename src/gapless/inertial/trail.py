@@ -3,90 +3,18 @@
 from __future__ import annotations
 
 import math
-from typing import Final, NamedTuple
+from collections import deque
+from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from gapless._numba import inline, kernel
 from gapless.recording import Array
 
 GRAVITY = 9.8
 """Enough for telling what gravity did, and what a tilt feigns [m/s^2]."""
-SPARE: Final = 64
-"""Rows that are free after a trail grew."""
 
 
-@inline
-def full(store: Array, ends: NDArray[np.int64]) -> bool:
-    """Whether not one mark more finds room; what is no longer wanted makes room first.
-
-    Parameters
-    ----------
-    store, ends
-        As `Trail` keeps them.
-
-    Returns
-    -------
-    bool
-    """
-    if ends[1] == store.shape[0] and ends[0] > 0:
-        for i in range(ends[0], ends[1]):
-            for j in range(7):
-                store[i - ends[0], j] = store[i, j]
-        ends[0], ends[1] = 0, ends[1] - ends[0]
-    return bool(ends[1] == store.shape[0])
-
-
-@inline
-def note(
-    store: Array, ends: NDArray[np.int64], length: float, corrected: Array, time: float, v_n: Array
-) -> None:
-    """Take the present velocity in, where there is room; see `Trail.mark`.
-
-    Parameters
-    ----------
-    store, ends, length, corrected
-        As `Trail` keeps them.
-    time : float
-        [s]
-    v_n : ndarray, shape (3,)
-        [m/s]
-    """
-    k = ends[1]
-    store[k, 0] = time
-    for j in range(3):
-        gained = v_n[j] - corrected[j]
-        store[k, 1 + j], store[k, 4 + j] = gained, 0.0
-        if k > ends[0]:
-            mean = 0.5 * (gained + store[k - 1, 1 + j])
-            store[k, 4 + j] = store[k - 1, 4 + j] + mean * (time - store[k - 1, 0])
-    ends[1] = k + 1
-    while ends[1] - ends[0] > 2 and store[ends[0] + 1, 0] < time - length:
-        ends[0] += 1
-
-
-@kernel
-def _note(
-    store: Array, ends: NDArray[np.int64], length: float, corrected: Array, time: float, v_n: Array
-) -> bool:
-    if full(store, ends):
-        return False
-    note(store, ends, length, corrected, time, v_n)
-    return True
-
-
-class Mark(NamedTuple):
-    """A stop of the propagation.
-
-    Parameters
-    ----------
-    time : float
-        [s]
-    gained, path : ndarray, shape (3,)
-        Velocity gained since the start [m/s], and its integral [m].
-    """
-
+class _Mark(NamedTuple):
     time: float
     gained: Array
     path: Array
@@ -99,34 +27,14 @@ class Trail:
     ----------
     length : float
         How far back it reaches [s]; 0 keeps nothing and costs nothing.
-
-    Attributes
-    ----------
-    store : ndarray, shape (k, 7)
-        Time, velocity gained, path of each mark; rows outside `ends` are none.
-    ends : ndarray of int, shape (2,)
-        First row, and one after the last.
-    corrected : ndarray, shape (3,)
-        Sum of all corrections [m/s].
     """
 
-    __slots__ = ("corrected", "ends", "length", "store")
+    __slots__ = ("corrected", "length", "marks")
 
     def __init__(self, length: float = 0.0) -> None:
         self.length = length
         self.corrected = np.zeros(3)
-        self.store = np.empty((SPARE if length > 0.0 else 0, 7))
-        self.ends = np.zeros(2, np.int64)
-
-    @property
-    def marks(self) -> list[Mark]:
-        """Those kept, in order of time."""
-        return [Mark(float(row[0]), row[1:4], row[4:]) for row in self._kept]
-
-    @property
-    def _kept(self) -> Array:
-        first, end = self.ends.tolist()
-        return self.store[first:end]
+        self.marks: deque[_Mark] = deque()
 
     def mark(self, time: float, v_n: Array) -> None:
         """Take the present velocity in.
@@ -138,15 +46,15 @@ class Trail:
         v_n : ndarray, shape (3,)
             Velocity, with all corrections so far [m/s].
         """
-        while self.length > 0.0 and not _note(self.store, self.ends, self.length, self.corrected, time, v_n):
-            self.grow()
-
-    def grow(self) -> None:
-        """Make room for more."""
-        kept = self._kept
-        self.store = np.empty((2 * len(kept) + SPARE, 7))
-        self.store[: len(kept)] = kept
-        self.ends = np.array([0, len(kept)])
+        if self.length <= 0.0:
+            return
+        gained, path = v_n - self.corrected, np.zeros(3)
+        if self.marks:
+            last = self.marks[-1]
+            path = last.path + 0.5 * (gained + last.gained) * (time - last.time)
+        self.marks.append(_Mark(time, gained, path))
+        while len(self.marks) > 2 and self.marks[1].time < time - self.length:
+            self.marks.popleft()
 
     def shift(self, dv: Array) -> None:
         """Note a correction of the velocity, which is no motion.
@@ -157,7 +65,7 @@ class Trail:
             [m/s]
         """
         if self.length > 0.0:
-            self.corrected += dv
+            self.corrected = self.corrected + dv
 
     def behind(self, window: float) -> tuple[Array, Array]:
         """By how much past velocities fell short of the present one, were it not for corrections since.
@@ -174,12 +82,15 @@ class Trail:
         gained : ndarray, shape (k, 3)
             Velocity gained since the present, so mostly the negative of what was gained up to it [m/s].
         """
-        kept = self._kept
-        if not len(kept):
+        if not self.marks:
             return np.zeros(0), np.zeros((0, 3))
-        times = kept[:, 0]
-        k = max(0, int(np.searchsorted(times, times[-1] - window, side="right")) - 1)
-        return times[k:].copy(), kept[k:, 1:4] - kept[-1, 1:4]
+        begin = self.marks[-1].time - window
+        k = len(self.marks) - 1
+        while k > 0 and self.marks[k].time > begin:
+            k -= 1
+        kept = list(self.marks)[k:]
+        gained = np.array([mark.gained for mark in kept])
+        return np.array([mark.time for mark in kept]), gained - gained[-1]
 
     def lag(self, window: float) -> tuple[Array, Array]:
         """By how much the present velocity exceeds its mean over a window that ends now.
@@ -194,18 +105,16 @@ class Trail:
         lag, lag_force : ndarray, shape (3,)
             In all, and the part that specific force gained, NED [m/s].
         """
-        kept = self._kept
-        if window <= 0.0 or len(kept) < 2:
+        if window <= 0.0 or len(self.marks) < 2:
             return np.zeros(3), np.zeros(3)
-        times, gained, path = kept[:, 0], kept[:, 1:4], kept[:, 4:]
-        now = float(times[-1])
-        start = max(now - window, float(times[0]))
-        k = min(int(np.searchsorted(times, start, side="right")), len(kept) - 1)
-        late = start - float(times[k - 1])
-        share = late / (float(times[k]) - float(times[k - 1]))
-        begun = path[k - 1] + late * (gained[k - 1] + 0.5 * share * (gained[k] - gained[k - 1]))
-        span = max(now - start, math.ulp(1.0))
-        lag = gained[-1] - (path[-1] - begun) / span
+        now, first = self.marks[-1], self.marks[0]
+        start = max(now.time - window, first.time)
+        k = next(i for i in range(len(self.marks) - 1, 0, -1) if self.marks[i - 1].time <= start)
+        a, b = self.marks[k - 1], self.marks[k]
+        share = (start - a.time) / (b.time - a.time)
+        begun = a.path + (start - a.time) * (a.gained + 0.5 * share * (b.gained - a.gained))
+        span = max(now.time - start, math.ulp(1.0))
+        lag = now.gained - (now.path - begun) / span
         return lag, lag - np.array([0.0, 0.0, 0.5 * GRAVITY * span])
 
     def copy(self) -> Trail:
@@ -215,7 +124,6 @@ class Trail:
         -------
         Trail
         """
-        new = object.__new__(Trail)
-        new.length, new.corrected = self.length, self.corrected.copy()
-        new.store, new.ends = self.store.copy(), self.ends.copy()
+        new = Trail(self.length)
+        new.corrected, new.marks = self.corrected, self.marks.copy()
         return new

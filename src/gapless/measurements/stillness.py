@@ -30,14 +30,6 @@ from gapless.units import DEG
 SLOTS = 15
 """Ticks in the window."""
 STILL, MOVING = 0, 1
-RING, MEAN, VAR, COUNT, SPREAD, SMOOTH = 0, 90, 94, 98, 100, 102
-FILLED, LASTED, LAST, LABEL, LABEL_SINCE, LABEL_TIME = 107, 108, 109, 110, 111, 112
-MEMORY_SIZE = 113
-"""Indices of the memory: the window; mean and variance of the log spreads of each class, and how often each
-was seen; log spreads now; smoothed rate and horizontal acceleration; ticks so far, how long everything has
-lasted, the last update; the class that GNSS names, since when, and when it did last."""
-SURE_STILL, SURE_MOVING = 8, 20
-"""So often must each class have been seen."""
 
 
 @inline
@@ -113,7 +105,7 @@ def _acceleration_variance(c: Any, p: Array, row: int) -> Any:
     return max(total, 0.0)
 
 
-@inline
+@kernel
 def stands(
     x: Array,
     p: Array,
@@ -177,58 +169,6 @@ def stands(
     return bool(surprise < limits[2])
 
 
-@inline
-def rests(
-    x: Array, p: Array, row: int, time: float, dt: float, felt: Array, tuning: Array, memory: Array
-) -> bool:
-    """Whether a stop is believed at the end of a tick, and an update is due.
-
-    Parameters
-    ----------
-    x, p, row
-        As for `stands`.
-    time, dt : float
-        End and length of the tick [s].
-    felt : ndarray, shape (6,)
-        As for `stands`.
-    tuning : ndarray, shape (8,)
-        `Stillness.tuning`.
-    memory : ndarray, shape (113,)
-        Changed in place.
-
-    Returns
-    -------
-    bool
-    """
-    filled = int(memory[FILLED])
-    slot = RING + 6 * (filled % SLOTS)
-    for i in range(6):
-        memory[slot + i] = felt[i]
-    memory[FILLED] = filled + 1
-    if filled + 1 < SLOTS:
-        return False
-    still = stands(
-        x, p, row, felt, min(1.0, dt / 0.4), memory[RING:MEAN].reshape(SLOTS, 6), memory[SPREAD:SMOOTH],
-        memory[SMOOTH:FILLED], memory[MEAN:VAR].reshape(2, 2), memory[VAR:COUNT].reshape(2, 2), tuning[2],
-        tuning[5:],
-    )  # fmt: skip
-    known = memory[COUNT + STILL] >= SURE_STILL and memory[COUNT + MOVING] >= SURE_MOVING
-    # a fresh GNSS speed does not contradict
-    known = known and (time - memory[LABEL_TIME] >= 2.2 or memory[LABEL] == STILL)
-    memory[LASTED] = memory[LASTED] + dt if still and known else 0.0
-    if memory[LASTED] < tuning[3] or time - memory[LAST] < tuning[4] - 1e-3:
-        return False
-    memory[LAST] = time
-    return True
-
-
-@kernel
-def _rests(
-    x: Array, p: Array, row: int, time: float, dt: float, felt: Array, tuning: Array, memory: Array
-) -> bool:
-    return rests(x, p, row, time, dt, felt, tuning, memory)
-
-
 @dataclass
 class Stillness(Constraint):
     """Zero velocity and zero angular rate, when the vehicle stands.
@@ -253,17 +193,23 @@ class Stillness(Constraint):
     hold: float = 1.5
     interval: float = 0.2
     limits: Array = field(default_factory=lambda: np.array([0.4 * DEG, 0.12, 22.5]))
-    memory: Array = field(default_factory=lambda: _nothing_yet())
+    ring: Array = field(default_factory=lambda: np.zeros((SLOTS, 6)))
+    filled: int = 0
+    count: Array = field(default_factory=lambda: np.zeros(2))
+    mean: Array = field(default_factory=lambda: np.zeros((2, 2)))
+    var: Array = field(default_factory=lambda: np.full((2, 2), 0.1))
+    smooth: Array = field(default_factory=lambda: np.zeros(5))
+    spread: Array = field(default_factory=lambda: np.full(2, 3.0))
+    label: int = -1
+    label_since: float = -math.inf
+    label_time: float = -math.inf
     fix_time: float = -math.inf
     fix: Array = field(default_factory=lambda: np.zeros(3))
     velocity_heard: bool = False
+    lasted: float = 0.0
+    last: float = -math.inf
     needs_heading: ClassVar[bool] = False
     parameters: ClassVar[tuple[str, ...]] = ("sd", "sd_rate", "odds", "hold")
-
-    @property
-    def tuning(self) -> Array:
-        """All parameters, as `rests` takes them."""
-        return np.array([self.sd, self.sd_rate, self.odds, self.hold, self.interval, *self.limits.tolist()])
 
     def hear(self, reading: Reading) -> None:
         """File the present spread under the class that the GNSS speed names."""
@@ -285,61 +231,50 @@ class Stillness(Constraint):
         self.fix_time, self.fix = reading.time, np.array(reading.value)
 
     def _file(self, time: float, speed: float, slow: float) -> None:
-        _file(self.memory, time, STILL if speed < slow else MOVING if 2.0 < speed < 60.0 else -1)
+        label = STILL if speed < slow else MOVING if 2.0 < speed < 60.0 else -1
+        if label != self.label:
+            self.label, self.label_since = label, time
+        self.label_time = time
+        if label < 0 or time - self.label_since < 1.0 or self.filled < SLOTS:
+            return
+        self.count[label] += 1
+        weight, clipped = 1.0 / min(self.count[label], 300.0), self.count[label] > 20
+        for i in range(2):
+            off = self.spread[i] - self.mean[label, i]
+            if clipped:
+                limit = 4.0 * math.sqrt(self.var[label, i])
+                off = max(-limit, min(limit, off))
+            self.mean[label, i] += weight * off
+            if self.count[label] > 5:
+                self.var[label, i] += weight * (off * off - self.var[label, i])
+            self.var[label, i] = max(self.var[label, i], 0.02)
 
     def tick(self, belief: Belief, motion: Motion) -> Observation | None:
         """Zero-velocity observation where the vehicle stands; see `Constraint.tick`."""
-        x, tuning = belief.estimate(), self.tuning
-        if not _rests(x, belief.p, ROW, motion.time, motion.dt, motion.felt, tuning, self.memory):
+        self.ring[self.filled % SLOTS] = motion.felt
+        self.filled += 1
+        if self.filled < SLOTS:
             return None
-        return self.observe(belief, motion)
-
-    def observe(self, belief: Belief, motion: Motion) -> Observation:
-        """Zero-velocity observation of a vehicle that stands.
-
-        Parameters
-        ----------
-        belief : Belief
-        motion : Motion
-
-        Returns
-        -------
-        Observation
-        """
-        x = belief.estimate()
+        x, share = belief.estimate(), min(1.0, motion.dt / 0.4)
+        still = stands(
+            x, belief.p, ROW, motion.felt, share, self.ring, self.spread, self.smooth,
+            self.mean, self.var, self.odds, self.limits,
+        )  # fmt: skip
+        self.lasted = self.lasted + motion.dt if still and self._known(motion.time) else 0.0
+        if self.lasted < self.hold or motion.time - self.last < self.interval - 1e-3:
+            return None
+        self.last = motion.time
         return Observation(*zero_velocity(x, belief.layout.n, motion.rate, self.sd, self.sd_rate))
+
+    def _known(self, time: float) -> bool:
+        """Both classes have been seen, and a fresh GNSS speed does not contradict."""
+        if self.count[STILL] < 8 or self.count[MOVING] < 20:
+            return False
+        return time - self.label_time >= 2.2 or self.label == STILL
 
     def copy(self) -> Self:
         """An independent copy; see `Constraint.copy`."""
         new = copy(self)
-        new.memory = self.memory.copy()
+        for name in ("ring", "count", "mean", "var", "smooth", "spread"):
+            setattr(new, name, getattr(self, name).copy())
         return new
-
-
-def _nothing_yet() -> Array:
-    memory = np.zeros(MEMORY_SIZE)
-    memory[VAR:COUNT], memory[SPREAD:SMOOTH] = 0.1, 3.0
-    memory[LABEL], memory[LAST], memory[LABEL_SINCE], memory[LABEL_TIME] = -1.0, *[-math.inf] * 3
-    return memory
-
-
-@kernel
-def _file(memory: Array, time: float, label: int) -> None:
-    """File the present spread under a class; -1 is none."""
-    if label != memory[LABEL]:
-        memory[LABEL], memory[LABEL_SINCE] = label, time
-    memory[LABEL_TIME] = time
-    if label < 0 or time - memory[LABEL_SINCE] < 1.0 or memory[FILLED] < SLOTS:
-        return
-    memory[COUNT + label] += 1.0
-    count = memory[COUNT + label]
-    for i in range(2):
-        mean, var = MEAN + 2 * label + i, VAR + 2 * label + i
-        off = memory[SPREAD + i] - memory[mean]
-        if count > 20:
-            limit = 4.0 * np.sqrt(memory[var])
-            off = max(-limit, min(limit, off))
-        memory[mean] += off / min(count, 300.0)
-        if count > 5:
-            memory[var] += (off * off - memory[var]) / min(count, 300.0)
-        memory[var] = max(memory[var], 0.02)

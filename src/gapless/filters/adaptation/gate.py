@@ -58,18 +58,6 @@ class Gate:
             return Verdict(None)
         return Verdict(innovation.r * (self.table.slope * nis / soft))
 
-    def passed(self, channel: str, time: float) -> None:
-        """Remember an observation within the soft bound, which counts as stated, that was not shown.
-
-        Parameters
-        ----------
-        channel : str
-        time : float
-            [s]
-        """
-        assert self.relock is not None
-        self.relock.passed(channel, time)
-
     def copy(self) -> Self:
         """An independent copy.
 

@@ -86,20 +86,9 @@ class Relock:
             run = self._extend(channel, time, z, np.sqrt(np.diag(r)))
             if not self._believe(channel, run, z):
                 return Verdict(r)
-        self.passed(channel, time)
-        return Verdict(r, widen=doubted)
-
-    def passed(self, channel: str, time: float) -> None:
-        """Remember that an observation was believed.
-
-        Parameters
-        ----------
-        channel : str
-        time : float
-            [s]
-        """
         self.accepted[channel] = time
         self.runs.pop(channel, None)
+        return Verdict(r, widen=doubted)
 
     def _extend(self, channel: str, time: float, z: Array, sd: Array) -> _Run:
         run = self.runs.get(channel)
