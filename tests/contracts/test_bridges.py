@@ -117,5 +117,5 @@ def test_every_recipe_builds(name):
     assert recipe.name == name
     assert recipe.description
     setup = settings(recipe, log, {}, MOUNTING)
-    assert len(setup.bridges) == (recipe.bridge.model != "none")
+    assert len(setup.bridges) == (recipe.bridge.model != "none") + len(recipe.rehearsal.others)
     assert set(recipe.bridge.features) <= set(FEATURES)

@@ -1,7 +1,7 @@
 """How often the truth lies in the ellipses that are stated: by age of the outage, and by recording.
 
     gapless bench LOG... --systems constraints,auto --length 60 --out DIR
-    python benchmarks/coverage.py DIR... [--systems constraints,auto]
+    python benchmarks/ellipses.py DIR... [--systems constraints,auto]
 
 Shares of the epochs in 50, 95 and 99 % ellipses, pooled and by age; then, by recording, the share of outages
 whose last epoch lies in the 95 % one. Epochs of an outage are anything but independent, ends of different
