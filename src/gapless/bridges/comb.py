@@ -9,6 +9,7 @@ from typing import Final
 import numpy as np
 
 from gapless._numba import kernel
+from gapless.bridges.knots import KNOTS, shares
 from gapless.bridges.orders import BINS, CHANNELS, LOWEST, ORDERS, STEP, WIDTH, Spectrum, evidence, gather
 from gapless.recording import Array
 
@@ -22,8 +23,8 @@ SMOOTH: Final = 2
 """Half width of the moving mean over the bins of the mean spectrum."""
 SPEED_BIN, SPEED_BINS = 0.5, 140
 """Speeds are counted in so many bins of this width [m/s]."""
-KNOTS: Final = (5.0, 10.0, 18.0)
-"""Sums are kept apart by speed, each spectrum shared by the two knots around its own [m/s]."""
+_BINS: Final = shares(np.asarray(SPEED_BIN * (np.arange(SPEED_BINS) + 0.5), float))
+"""How the bins of speed are shared by the knots."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -151,9 +152,7 @@ class Memory:
         Comb
         """
         left = self.left()
-        count, raw = left.common()
-        doubt = left.variance[:, None] / count
-        return Comb(shrunk(raw, doubt), np.sqrt(doubt), left.variance, left.mean)
+        return left.comb(*left.common())
 
     def left(self) -> Left:
         """The sums less what the mean spectrum alone would have put there.
@@ -201,24 +200,20 @@ class Left:
         count = self.count.sum(axis=0) + DOUBT
         return count, without_trend(self.total.sum(axis=0) / count)
 
+    def comb(self, count: Array, raw: Array) -> Comb:
+        """The comb at all speeds.
 
-def shares(speeds: Array) -> Array:
-    """How speeds are shared by the knots: linear between two, the outermost alone beyond the ends.
+        Parameters
+        ----------
+        count, raw : ndarray
+            From `common`.
 
-    Parameters
-    ----------
-    speeds : ndarray, shape (k,)
-        [m/s]
-
-    Returns
-    -------
-    ndarray, shape (k, knots)
-        Sums to one.
-    """
-    return np.array([np.interp(speeds, KNOTS, one) for one in np.eye(len(KNOTS))]).T
-
-
-_BINS: Final = shares(np.asarray(SPEED_BIN * (np.arange(SPEED_BINS) + 0.5), float))
+        Returns
+        -------
+        Comb
+        """
+        doubt = self.variance[:, None] / count
+        return Comb(shrunk(raw, doubt), np.sqrt(doubt), self.variance, self.mean)
 
 
 def shrunk(raw: Array, doubt: Array) -> Array:

@@ -11,7 +11,8 @@ from typing import Self
 
 import numpy as np
 
-from gapless.bridges.comb import DOUBT, Comb, Memory, shares, shrunk, without_trend
+from gapless.bridges.comb import DOUBT, Comb, Memory, shrunk, without_trend
+from gapless.bridges.knots import shares
 from gapless.recording import Array
 
 
@@ -44,13 +45,11 @@ class Combs:
         """
         left = memory.left()
         count, raw = left.common()
-        doubt = left.variance[:, None] / count
-        common = Comb(shrunk(raw, doubt), np.sqrt(doubt), left.variance, left.mean)
         seen = (left.count + DOUBT)[:, None, :]
         own = (left.total + DOUBT * raw) / seen  # unseen, it is the common one
         own = without_trend(own.reshape(-1, own.shape[-1])).reshape(own.shape)
         others = shrunk(own - raw, left.variance[:, None] / seen)
-        return cls(common, others)
+        return cls(left.comb(count, raw), others)
 
     def at(self, speed: float) -> Comb:
         """The comb at a speed.

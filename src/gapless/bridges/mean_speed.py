@@ -9,7 +9,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from gapless.attitude import to_matrix
+from gapless._numba import kernel
+from gapless.attitude import matrix_rows
 from gapless.inertial.belief import Belief
 from gapless.inertial.trail import GRAVITY
 from gapless.recording import Array
@@ -33,15 +34,32 @@ def mean_speed(belief: Belief, window: float) -> Array:
     -------
     ndarray, shape (1, n)
     """
-    x, layout = belief.estimate(), belief.layout
+    x, h = belief.estimate(), np.zeros((1, belief.layout.n))
     times, gained = belief.trail.behind(window)
-    inside = times >= times[-1] - window
-    ago, lag = times[-1] - times[inside], -gained[inside]
-    v = x[3:6] - lag
-    along = v / np.maximum(np.linalg.norm(v, axis=1), 0.1)[:, None]
-    force = lag - np.outer(ago, [0.0, 0.0, GRAVITY])
-    h = np.zeros((1, layout.n))
-    h[0, 3:6] = along.mean(axis=0)
-    h[0, 6:9] = np.cross(along, force).mean(axis=0)
-    h[0, layout.blocks["accel_bias"]] = (along * ago[:, None]).mean(axis=0) @ to_matrix(x[6:10])
+    bias = belief.layout.blocks["accel_bias"].start
+    _fill(h[0], bias, x, times, gained, times[-1] - window)
     return h
+
+
+@kernel
+def _fill(h: Array, bias: int, x: Array, times: Array, gained: Array, begin: float) -> None:
+    """Means over the times from `begin` on, put where the layout has them."""
+    n = 0
+    for i in range(times.size):
+        n += times[i] >= begin
+    c = matrix_rows((x[6], x[7], x[8], x[9]))
+    unit, force = np.empty(3), np.empty(3)
+    for i in range(times.size):
+        if times[i] < begin:
+            continue
+        ago, square = times[-1] - times[i], 0.0
+        for j in range(3):
+            unit[j], force[j] = x[3 + j] + gained[i, j], -gained[i, j]
+            square += unit[j] * unit[j]
+        unit /= max(np.sqrt(square), 0.1)
+        force[2] -= GRAVITY * ago
+        for j in range(3):
+            k, m = (j + 1) % 3, (j + 2) % 3
+            h[3 + j] += unit[j] / n
+            h[6 + j] += (unit[k] * force[m] - unit[m] * force[k]) / n
+            h[bias + j] += ago * (unit[0] * c[j] + unit[1] * c[3 + j] + unit[2] * c[6 + j]) / n

@@ -115,7 +115,10 @@ def candidates(system: System) -> list[System]:
     ConfigError
         If there is no such system, or it has no bridge.
     """
-    found = [named(name) for name in system.rehearsal.others]
+    try:
+        found = [named(name) for name in system.rehearsal.others]
+    except ConfigError as error:
+        raise ConfigError(f"rehearsal.others: {error}") from None
     for other in found:
         if other.bridge.model == "none":
             raise ConfigError(f"rehearsal.others: {other.name} has no bridge; name a system that has one")

@@ -3,8 +3,9 @@
 import numpy as np
 from numpy.testing import assert_allclose
 
-from gapless.bridges.comb import KNOTS, Memory, shares
+from gapless.bridges.comb import Memory
 from gapless.bridges.combs import Combs
+from gapless.bridges.knots import KNOTS, shares
 from gapless.bridges.orders import BINS, CHANNELS, LOWEST, ORDERS, STEP, WIDTH, Spectrum
 
 ORDER = LOWEST + STEP * np.arange(ORDERS)
