@@ -32,8 +32,10 @@ SETTLE: Final = 30.0
 """After its alignment a navigator is left alone for so long [s]."""
 
 
-RESERVE: Final = 10
+RESERVE: Final = 12
 """Candidates that may be tried on credit, so that there is a choice early in a drive."""
+SLOW: Final = 1.5
+"""An outage through which the car mostly stood tells nothing of what would bridge one: mean speed [m/s]."""
 
 
 @dataclass(frozen=True)
@@ -56,7 +58,7 @@ class Plan:
     presets: Mapping[str, Manner] = field(default_factory=dict)
     every: float = 20.0
     length: float = 60.0
-    budget: float = 2.0
+    budget: float = 0.5
 
 
 @dataclass
@@ -259,7 +261,7 @@ class Rehearsing:
 
     def _rehearse(self, one: _Open) -> None:
         """Replay an outage in every manner that the budget allows; adopt what comes of it."""
-        if not one.aided or len(one.track) < 10:
+        if not one.aided or len(one.track) < 10 or _way(one.track) < SLOW * self.plan.length:
             return
         cost, events, trials = one.samples, one.script(), list[Trial]()
         if not self.history:
@@ -300,6 +302,14 @@ class Rehearsing:
     def _manner(self, bridge: str, preset: str, scale: float) -> Manner:
         tuned = self.plan.presets[preset] if preset else self.settings.manner
         return replace(tuned, voices=self.plan.bridges.get(bridge, ()), scale=scale)
+
+
+def _way(track: list[tuple[float, float, float]]) -> float:
+    """Length of a track, or nearly: chords of ten rows, for a standing car's fixes wander [m]."""
+    points = np.array(track)[::10, 1:]
+    r_m, r_n = earth.radii(np.sin(points[0, 0]))
+    steps = np.diff(points, axis=0) * [r_m, r_n * math.cos(points[0, 0])]
+    return float(np.hypot(*steps.T).sum())
 
 
 def _apart(rows: Trajectory, track: Array, start: float) -> tuple[float, tuple[float, ...]]:

@@ -161,7 +161,7 @@ class RehearsalUse(Struct, forbid_unknown_fields=True, frozen=True):
 
     every: NonNegative = 0.0
     length: Annotated[float, Meta(ge=10.0)] = 60.0
-    budget: Positive = 2.0
+    budget: Positive = 0.5
     others: tuple[str, ...] = ()
     presets: dict[str, dict[str, Any]] = {}
 

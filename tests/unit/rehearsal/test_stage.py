@@ -122,12 +122,27 @@ def test_a_fork_runs_ahead_alone(setup, feed, whole):
 
 
 def test_the_budget_limits_the_trials(setup, feed):
-    """Ten trials go on credit, two in each rehearsal; then ten seconds at 0.01 pay for no more."""
-    rich = told(fresh(setup), feed[: cut(feed, 119.0)])
+    """Twelve trials go on credit, two in each rehearsal; then ten seconds at 0.01 pay for no more."""
+    rich = told(fresh(setup, replace(PLAN, budget=4.0)), feed[: cut(feed, 119.0)])
     poor = told(fresh(setup, replace(PLAN, budget=0.01)), feed[: cut(feed, 119.0)])
-    assert sum(len(one.trials) for one in poor.history) <= 10
+    assert sum(len(one.trials) for one in poor.history) <= 12
     assert poor.history == rich.history[: len(poor.history)]
-    assert len(poor.history) < len(rich.history) or sum(len(one.trials) for one in rich.history) <= 10
+    assert len(poor.history) < len(rich.history) or sum(len(one.trials) for one in rich.history) <= 12
+
+
+def test_a_standing_car_rehearses_nothing():
+    """This drive stops for half a minute: what lies mostly in the stop is left out, what does not is not."""
+    log = simulate("urban", "consumer", 150.0, 6, rate=50.0, chassis=CAR)
+    rich = replace(PLAN, budget=4.0)
+    stage = told(fresh(settings(named("wheels"), log, {}, MOUNTING), rich), events(log, {}))
+    rows, began = stage.journal.trajectory(), stage.journal.alignments[0][0] + 30.0
+    rehearsed = {round(one.start - began) for one in stage.history}
+    speeds = dict[int, float]()
+    for k in range(0, 70, 10):
+        inside = (rows.time >= began + k) & (rows.time <= began + k + 20.0)
+        speeds[k] = np.linalg.norm(rows.v_n[inside, :2], axis=1).mean()
+    assert min(speeds.values()) < 1.5
+    assert rehearsed == {k for k, speed in speeds.items() if speed > 1.5}
 
 
 def test_what_was_adopted_survives_a_late_reading(setup, feed):
