@@ -82,6 +82,21 @@ class ImuBlock(NamedTuple):
         s = slice(first, last)
         return ImuBlock(self.time[s], self.dt[s], self.dtheta[s], self.dvel[s])
 
+    def within(self, begin: float, end: float) -> ImuBlock:
+        """Samples whose intervals end between two times, these included.
+
+        Parameters
+        ----------
+        begin, end : float
+            [s]
+
+        Returns
+        -------
+        ImuBlock
+        """
+        first, last = int(self.time.searchsorted(begin)), int(self.time.searchsorted(end, side="right"))
+        return self.rows(first, last)
+
     @staticmethod
     def join(blocks: list[ImuBlock]) -> ImuBlock:
         """Blocks that follow each other as one.

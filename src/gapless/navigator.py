@@ -116,8 +116,9 @@ class Navigator:
             `Settings.lateness`.
         """
         if isinstance(event, ImuBlock):
-            self._past.before(self._state, event)
-            self._feel(event)
+            for part in self._past.parts(event):
+                self._past.before(self._state, part)
+                self._feel(part)
         elif event:
             self._hear(event)
 

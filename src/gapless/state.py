@@ -5,6 +5,7 @@ from __future__ import annotations
 import bisect
 import math
 from dataclasses import dataclass, field
+from typing import Final
 
 from gapless.alignment.coarse import Aligner
 from gapless.bridges.base import Bridge
@@ -15,6 +16,9 @@ from gapless.inertial.belief import Belief
 from gapless.manner import Manner
 from gapless.measurements.base import Constraint
 from gapless.recording import Array
+
+REACH: Final = 0.5
+"""So much longer than `lateness` is the last part of a long block [s]."""
 
 
 @dataclass
@@ -113,6 +117,22 @@ class Past:
     def __init__(self, lateness: float) -> None:
         self.lateness = lateness
         self.entries: list[tuple[State, list[Event]]] = []
+
+    def parts(self, block: ImuBlock) -> tuple[ImuBlock, ...]:
+        """A long block in two: what late readings reach need not be run again together with all before it.
+
+        Parameters
+        ----------
+        block : ImuBlock
+
+        Returns
+        -------
+        tuple of ImuBlock
+        """
+        end = int(block.time.searchsorted(block.time[-1] - self.lateness - REACH))
+        if end == 0 or block.time[end] - block.time[0] < REACH:
+            return (block,)
+        return block.rows(0, end), block.rows(end, len(block.time))
 
     def before(self, state: State, block: ImuBlock) -> None:
         """Keep the state that a block is about to change, and the block.

@@ -137,6 +137,31 @@ def test_late_readings_end_in_the_same_belief(share):
         assert ends[0] == ends[1]
 
 
+def test_a_late_reading_after_a_long_silence_replays_what_it_reaches(monkeypatch):
+    """Twenty silent seconds come as one block; a fix late by a quarter second costs no more of them."""
+    log = recording("exact", 1.0)
+    setup = replace(prepared(log, "exact"), lateness=0.3)
+    imu, feed = log.imu, list(events(log, CLOCKS["exact"]))
+    first = int(np.searchsorted(imu.time, OUTAGE[0]))
+    last = int(np.searchsorted(imu.time, OUTAGE[0] + 20.0))
+    before = [e for e in feed if not isinstance(e, ImuBlock) or e.time[-1] <= imu.time[first - 1]]
+    fix = next(e for e in reversed(before) if not isinstance(e, ImuBlock))
+    late = tuple(r._replace(time=float(imu.time[last - 1]) - 0.25) for r in fix)
+    run_through = []
+    monkeypatch.setattr(
+        Navigator,
+        "_feel",
+        lambda self, block, feel=Navigator._feel: (run_through.append(len(block.time)), feel(self, block))[1],
+    )
+    navigator = fold(Navigator(setup), before)
+    known = navigator.time
+    navigator.step(ImuBlock.of(imu, int(np.searchsorted(imu.time, known, side="right")), last))
+    run_through.clear()
+    navigator.step(late)
+    assert navigator.dropped == 0
+    assert 0.3 * imu.rate < sum(run_through) < 1.5 * imu.rate
+
+
 def handed_over(order):
     """One second after 60 s with two readings, all handed over in some order."""
     log = recording("exact", 1.0)

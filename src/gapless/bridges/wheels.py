@@ -19,6 +19,7 @@ from gapless.bridges.base import Saying
 from gapless.bridges.comb import Memory
 from gapless.bridges.combs import Combs
 from gapless.bridges.course import Course, Drift
+from gapless.bridges.felt import felt
 from gapless.bridges.mean_speed import mean_speed
 from gapless.bridges.orders import LOWEST, ORDERS, STEP, WINDOW, Spectrum, spectrum
 from gapless.bridges.peak import Peak, Trust, peak
@@ -29,7 +30,6 @@ from gapless.events import ImuBlock, Motion, Reading
 from gapless.exhibits import Heard, WheelsHeard, fundamental
 from gapless.inertial.belief import Belief
 from gapless.measurements.base import Observation, Sensor
-from gapless.recording import Array
 from gapless.solution import Decision
 
 TAUGHT: Final = 3.5
@@ -91,7 +91,7 @@ class Wheels:
     widest: float = 6.0
     patience: float = 2.5
     vehicle: str = ""
-    felt: list[ImuBlock] = field(default_factory=list, init=False)
+    blocks: list[ImuBlock] = field(default_factory=list, init=False)
     memory: Memory | None = field(default=None, init=False)
     combs: Combs | None = field(default=None, init=False)
     rate: float = field(default=math.nan, init=False)
@@ -122,7 +122,7 @@ class Wheels:
 
     def feel(self, block: ImuBlock) -> None:
         """See `Bridge`."""
-        self.felt.append(block)
+        self.blocks.append(block)
 
     def hear(self, belief: Belief, reading: Reading, used: bool) -> None:
         """See `Bridge`: a fix that is used breaks the silence."""
@@ -148,7 +148,7 @@ class Wheels:
 
     def lost(self) -> None:
         """See `Bridge`."""
-        self.felt = []
+        self.blocks = []
 
     def decisions(self, start: float) -> tuple[Decision, ...]:
         """See `Bridge`."""
@@ -182,39 +182,30 @@ class Wheels:
     def copy(self) -> Self:
         """See `Bridge`: sums are shared, for they are never changed."""
         new = copy(self)
-        new.felt = list(self.felt)
+        new.blocks = list(self.blocks)
         return new
 
     # --- hearing --------------------------------------------------------------------------------
 
     def _listen(self, belief: Belief, time: float) -> Spectrum | None:
         """The spectrum of the window that ends now, warped by the inertial course of the speed."""
-        rows = self._samples(time - WINDOW - ROOM, time)
-        if len(rows) < 3:
-            return None
-        self.rate = 1.0 / float(np.median(np.diff(rows[:, 0])))
         times, gained = belief.trail.behind(WINDOW)
         if len(times) < 10 or times[0] > time - WINDOW or times[-1] < time - 1e-3:
             return None
-        speeds = np.linalg.norm(belief.estimate()[3:6] + gained, axis=1)
+        v = belief.estimate()[3:6] + gained
+        speeds = np.sqrt((v * v).sum(axis=1))
         if speeds.min() < CRAWL:
             return None
-        gaps = np.diff(rows[:, 0])
-        if self.rate < RATE - 0.5 or gaps.max() > 0.2 or rows[0, 0] > time - WINDOW:
+        begin = time - WINDOW - ROOM
+        while self.blocks and self.blocks[0].time[-1] < begin:
+            self.blocks.pop(0)
+        window = felt(self.blocks, begin, time)
+        if window is None:
             return None
-        return spectrum(rows, times, speeds, time, 0.5 * self.rate - 3.0)
-
-    def _samples(self, begin: float, end: float) -> Array:
-        """Time, rates and forces of each sample between two times; older ones are forgotten."""
-        while self.felt and self.felt[0].time[-1] < begin:
-            self.felt.pop(0)
-        if not self.felt:
-            return np.zeros((0, 7))
-        block = ImuBlock.join(self.felt)
-        block = block.rows(0, int(np.searchsorted(block.time, end, side="right")))  # felt goes ahead
-        dt = block.dt[:, None]
-        rows = np.column_stack([block.time - 0.5 * block.dt, block.dtheta / dt, block.dvel / dt])
-        return rows[np.searchsorted(rows[:, 0], begin) :]
+        self.rate = window.rate
+        if self.rate < RATE - 0.5 or window.gap > 0.2 or window.rows[0, 0] > time - WINDOW:
+            return None
+        return spectrum(window.rows, times, speeds, time, 0.5 * self.rate - 3.0)
 
     def _learn(self, belief: Belief, heard: Spectrum, time: float) -> None:
         if heard.speed < TAUGHT or speed_sd(belief) > SURE:

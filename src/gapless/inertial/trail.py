@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections import deque
-from typing import NamedTuple
+from typing import Final
 
 import numpy as np
 
@@ -14,10 +13,8 @@ GRAVITY = 9.8
 """Enough for telling what gravity did, and what a tilt feigns [m/s^2]."""
 
 
-class _Mark(NamedTuple):
-    time: float
-    gained: Array
-    path: Array
+SPARE: Final = 64
+"""Rows that are free after a trail grew."""
 
 
 class Trail:
@@ -27,14 +24,25 @@ class Trail:
     ----------
     length : float
         How far back it reaches [s]; 0 keeps nothing and costs nothing.
+
+    Attributes
+    ----------
+    corrected : ndarray, shape (3,)
+        Sum of all corrections of the velocity [m/s]; never changed in place.
     """
 
-    __slots__ = ("corrected", "length", "marks")
+    __slots__ = ("_end", "_first", "_store", "corrected", "length")
 
     def __init__(self, length: float = 0.0) -> None:
         self.length = length
         self.corrected = np.zeros(3)
-        self.marks: deque[_Mark] = deque()
+        self._store = np.empty((0, 7))
+        self._first = self._end = 0
+
+    @property
+    def marks(self) -> Array:
+        """Time [s], velocity gained [m/s] and its integral [m] at each stop, shape (k, 7)."""
+        return self._store[self._first : self._end]
 
     def mark(self, time: float, v_n: Array) -> None:
         """Take the present velocity in.
@@ -48,13 +56,26 @@ class Trail:
         """
         if self.length <= 0.0:
             return
-        gained, path = v_n - self.corrected, np.zeros(3)
-        if self.marks:
-            last = self.marks[-1]
-            path = last.path + 0.5 * (gained + last.gained) * (time - last.time)
-        self.marks.append(_Mark(time, gained, path))
-        while len(self.marks) > 2 and self.marks[1].time < time - self.length:
-            self.marks.popleft()
+        if self._end == len(self._store):
+            self._make_room()
+        store, k = self._store, self._end
+        x, y, z = (v_n - self.corrected).tolist()
+        if k == self._first:
+            store[k] = time, x, y, z, 0.0, 0.0, 0.0
+        else:
+            before, u, v, w, a, b, c = store[k - 1].tolist()
+            dt = time - before
+            a, b, c = a + 0.5 * (x + u) * dt, b + 0.5 * (y + v) * dt, c + 0.5 * (z + w) * dt
+            store[k] = time, x, y, z, a, b, c
+        self._end = k + 1
+        while self._end - self._first > 2 and store[self._first + 1, 0] < time - self.length:
+            self._first += 1
+
+    def _make_room(self) -> None:
+        kept = self.marks
+        self._store = np.empty((len(kept) + SPARE, 7))
+        self._store[: len(kept)] = kept
+        self._first, self._end = 0, len(kept)
 
     def shift(self, dv: Array) -> None:
         """Note a correction of the velocity, which is no motion.
@@ -82,15 +103,12 @@ class Trail:
         gained : ndarray, shape (k, 3)
             Velocity gained since the present, so mostly the negative of what was gained up to it [m/s].
         """
-        if not self.marks:
+        kept = self.marks
+        if not len(kept):
             return np.zeros(0), np.zeros((0, 3))
-        begin = self.marks[-1].time - window
-        k = len(self.marks) - 1
-        while k > 0 and self.marks[k].time > begin:
-            k -= 1
-        kept = list(self.marks)[k:]
-        gained = np.array([mark.gained for mark in kept])
-        return np.array([mark.time for mark in kept]), gained - gained[-1]
+        begin = kept[-1, 0] - window
+        kept = kept[max(int(kept[:, 0].searchsorted(begin, side="right")) - 1, 0) :]
+        return kept[:, 0].copy(), kept[:, 1:4] - kept[-1, 1:4]
 
     def lag(self, window: float) -> tuple[Array, Array]:
         """By how much the present velocity exceeds its mean over a window that ends now.
@@ -105,16 +123,18 @@ class Trail:
         lag, lag_force : ndarray, shape (3,)
             In all, and the part that specific force gained, NED [m/s].
         """
-        if window <= 0.0 or len(self.marks) < 2:
+        marks = self.marks
+        if window <= 0.0 or len(marks) < 2:
             return np.zeros(3), np.zeros(3)
-        now, first = self.marks[-1], self.marks[0]
-        start = max(now.time - window, first.time)
-        k = next(i for i in range(len(self.marks) - 1, 0, -1) if self.marks[i - 1].time <= start)
-        a, b = self.marks[k - 1], self.marks[k]
-        share = (start - a.time) / (b.time - a.time)
-        begun = a.path + (start - a.time) * (a.gained + 0.5 * share * (b.gained - a.gained))
-        span = max(now.time - start, math.ulp(1.0))
-        lag = now.gained - (now.path - begun) / span
+        times, gained, path = marks[:, 0], marks[:, 1:4], marks[:, 4:]
+        start = max(times[-1] - window, times[0])
+        k = min(int(times.searchsorted(start, side="right")), len(marks) - 1)
+        share = (start - times[k - 1]) / (times[k] - times[k - 1])
+        begun = path[k - 1] + (start - times[k - 1]) * (
+            gained[k - 1] + 0.5 * share * (gained[k] - gained[k - 1])
+        )
+        span = max(times[-1] - start, math.ulp(1.0))
+        lag = gained[-1] - (path[-1] - begun) / span
         return lag, lag - np.array([0.0, 0.0, 0.5 * GRAVITY * span])
 
     def copy(self) -> Trail:
@@ -125,5 +145,8 @@ class Trail:
         Trail
         """
         new = Trail(self.length)
-        new.corrected, new.marks = self.corrected, self.marks.copy()
+        new.corrected = self.corrected
+        if self.length > 0.0:
+            new._store, new._first, new._end = self._store, self._first, self._end
+            new._make_room()
         return new
