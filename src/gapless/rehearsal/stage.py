@@ -28,8 +28,8 @@ from gapless.rehearsal.shown import shown
 from gapless.settings import Settings
 from gapless.solution import Decision
 
-SETTLE: Final = 30.0
-"""After its alignment a navigator is left alone for so long [s]."""
+SETTLE: Final = 45.0
+"""After its alignment a navigator is left alone for so long, that bridges have something to say by then [s]."""
 
 
 RESERVE: Final = 12
