@@ -29,7 +29,7 @@ from gapless.settings import Settings
 from gapless.solution import Decision
 
 SETTLE: Final = 45.0
-"""After its alignment a navigator is left alone for so long, that bridges have something to say by then [s]."""
+"""After its alignment a navigator is left alone for so long [s]: bridges have something to say by then."""
 
 
 RESERVE: Final = 12
