@@ -9,7 +9,7 @@ from sklearn.utils.validation import has_fit_parameter
 
 from gapless.learners import LEARNERS, make
 from gapless.learners.adaboost_rt import AdaBoostRT
-from gapless.learners.nar import NAR, asfp
+from gapless.learners.nar import NAR
 from gapless.learners.per_output import PerOutput
 from gapless.learners.random_layer import RandomLayer
 from gapless.learners.saved import dumps, loads
@@ -45,8 +45,11 @@ CHECKED |= {
     "AdaBoostRT of weighted RELM": AdaBoostRT(ResidualWeighted(RandomLayer(penalty=1e-3)), rounds=3),
     "NAR": NAR(make("relm"), order=1),
     "NAR, auto": NAR(make("relm"), order="auto"),
-    "ASFP": asfp(2, 1),
+    "NAR of RBF networks": NAR(make("rbf"), order=2),
     "PerOutput": PerOutput(),
+    "ByPart of Ridge, one column each": make(
+        "by_part", {"estimator": "sklearn.linear_model.Ridge", "width": 1}
+    ).regressor,
 }
 
 

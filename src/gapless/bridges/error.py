@@ -1,11 +1,12 @@
 """The error of an uncorrected INS as what is learned: O_INS-dP and its kin.
 
-One model with four parts to choose gives five of the papers' and their comparators': what of the INS is
-shown (features, now and some epochs back), how many past errors are shown beside it, against what the
-error is taken, and which of its components are learned. Wang et al. 2018 (O_INS-dP: INS against GNSS),
-Xu, Li & Rizos 2010 (O_INS-X_k: against the filter's estimate), Georges et al. 2015 (with a sliding window
-of past errors, each prediction feeding the next), Aslinezhad et al. 2020 (past errors alone: NAR; five
-past INS samples alone: feed-forward).
+One model with five parts to choose gives six of the papers' and their comparators': what of the INS is shown
+(features, now and some epochs back), how many past errors are shown beside it, against what the error is
+taken, which of its components are learned, and how many epochs are predicted at a time. Wang et al. 2018
+(O_INS-dP: INS against GNSS), Xu, Li & Rizos 2010 (O_INS-X_k: against the filter's estimate), Semeniuk &
+Noureldin 2006 (past errors alone, by segments: ASFP), Georges et al. 2015 (with a sliding window of past
+errors, each prediction feeding the next), Aslinezhad et al. 2020 (past errors alone: NAR; five past INS
+samples alone: feed-forward).
 """
 
 from __future__ import annotations
@@ -39,11 +40,14 @@ class Course(NamedTuple):
         The last errors, oldest first: true ones at first, then predicted ones; as many as a row shows.
     error : ndarray, shape (k,)
         The last one predicted.
+    ahead : tuple of ndarray
+        Those of the same segment that are still to come.
     """
 
     recent: tuple[Epoch, ...]
     past: tuple[Array, ...]
     error: Array
+    ahead: tuple[Array, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -64,6 +68,8 @@ class ErrorModel:
         Components: "position", "velocity", and with the filter as reference "attitude".
     axes : int
         2 for north and east, 3 for down too.
+    segment : int
+        Epochs that are predicted at a time.
     """
 
     features: tuple[str, ...]
@@ -72,6 +78,12 @@ class ErrorModel:
     reference: str
     learns: tuple[str, ...]
     axes: int
+    segment: int = 1
+
+    @property
+    def outputs(self) -> int:
+        """See `Model`."""
+        return self.segment * sum(self._size(name) for name in self.learns)
 
     def pairs(self, epochs: Sequence[Epoch]) -> tuple[Array, Array]:
         """See `Model`: before its start the shadow had no error."""
@@ -83,10 +95,12 @@ class ErrorModel:
                 run, whole = 0, bool(i) and epoch.segment != epochs[i - 1].segment
             else:
                 run += 1
-            if whole or run >= need:
+            ahead = epochs[i : i + self.segment]
+            joined = len(ahead) == self.segment and all(follows(b, a) for a, b in pairwise(ahead))
+            if joined and (whole or run >= need):
                 course = self._course(epochs[i - min(run, need) : i], known[i - min(run, need) : i])
                 rows.append(self.row(course, epoch))
-                targets.append(known[i])
+                targets.append(np.concatenate(known[i : i + self.segment]))
         if not rows:
             return np.zeros((0, 1)), np.zeros((0, 1))
         x, y = np.array(rows).reshape(len(rows), -1), np.array(targets).reshape(len(rows), -1)
@@ -116,10 +130,11 @@ class ErrorModel:
         return np.concatenate([features(self.features, e) for e in shown[-self.lags :]] + list(course.past))
 
     def carry(self, course: Course, epoch: Epoch, y: Array) -> Course:
-        """See `Model`: each prediction feeds the next."""
+        """See `Model`: each prediction feeds the next, and a segment is gone through to its end."""
+        error, *ahead = course.ahead or y.reshape(self.segment, -1)
         recent = (*course.recent, epoch)[-(self.lags - 1) :] if self.lags > 1 else ()
-        past = (*course.past, y)[-self.window :] if self.window else ()
-        return Course(recent, past, y)
+        past = (*course.past, error)[-self.window :] if self.window else ()
+        return Course(recent, past, error, tuple(ahead))
 
     def wrong(self, course: Course, epoch: Epoch) -> dict[str, Array]:
         """See `Model`."""

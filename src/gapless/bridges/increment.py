@@ -56,6 +56,11 @@ class IncrementModel:
     axes: int
     sensor: Sensor
 
+    @property
+    def outputs(self) -> int:
+        """See `Model`."""
+        return self.axes
+
     def pairs(self, epochs: Sequence[Epoch]) -> tuple[Array, Array]:
         """See `Model`."""
         rows, targets = [], []

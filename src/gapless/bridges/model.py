@@ -32,6 +32,11 @@ class Model(Protocol):
     What changes during an outage is a `course`, a value that is replaced and never changed.
     """
 
+    @property
+    def outputs(self) -> int:
+        """Numbers that a learner answers with."""
+        ...
+
     def pairs(self, epochs: Sequence[Epoch]) -> tuple[Array, Array]:
         """Rows to learn from.
 

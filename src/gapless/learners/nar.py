@@ -10,8 +10,6 @@ from sklearn.base import BaseEstimator, clone
 from sklearn.utils._param_validation import Integral, Interval, StrOptions
 from sklearn.utils.validation import check_array, check_is_fitted, validate_data
 
-from gapless.learners.rbf import RBFNetwork
-from gapless.learners.scaling import Scaled
 from gapless.recording import Array
 
 MAX_ORDER: Final = 20
@@ -201,24 +199,3 @@ class NAR(BaseEstimator):
             window = np.vstack([window, parts[-1]])[-self.order_ :]
         ahead: Array = np.vstack(parts)[:steps]
         return ahead
-
-
-def asfp(window: int = 10, segment: int = 5, seed: int = 0) -> NAR:
-    """One of the two predictors of ASFP: an RBF network that goes forward segment by segment.
-
-    One is for position errors and one for velocity errors (Semeniuk and Noureldin 2006, as wang2018
-    runs it). Windows slide over the past by one row; the papers name neither length.
-
-    Parameters
-    ----------
-    window : int
-        Rows of the past.
-    segment : int
-        Rows predicted at a time.
-    seed : int
-
-    Returns
-    -------
-    NAR
-    """
-    return NAR(Scaled(RBFNetwork(random_state=seed)), order=window, segment=segment)

@@ -21,6 +21,7 @@ LEARNERS: Final[dict[str, str | Callable[[], Any]]] = {
     "ls_svr": "gapless.learners.ls_svr.LSSVR",
     "svr": "gapless.learners.svr.MeanLossSVR",
     "ga_svr": "gapless.learners.genetic.ga_svr",
+    "by_part": "gapless.learners.by_part.by_part",
     "mlp": "gapless.learners.network.Perceptron",
 }
 """A class or function without arguments, or where to find it. Your own: ``LEARNERS["mine"] = Mine``."""

@@ -31,6 +31,7 @@ CLASSES: Final = {
     "AdaBoostRT": "gapless.learners.adaboost_rt",
     "MeanLossSVR": "gapless.learners.svr",
     "PerOutput": "gapless.learners.per_output",
+    "ByPart": "gapless.learners.by_part",
     "Perceptron": "gapless.learners.network",
     "GeneticSearchCV": "gapless.learners.genetic",
     "NAR": "gapless.learners.nar",

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Final, Literal
 import numpy as np
 from msgspec import Meta, Struct
 
-from gapless.errors import ConfigError, MissingExtraError, registered_elsewhere
+from gapless.errors import ConfigError, MissingExtraError, ModelError, registered_elsewhere
 from gapless.systems.values import Count, NonNegative, Positive, WholeNumber
 
 if TYPE_CHECKING:
@@ -31,16 +31,17 @@ class BridgeUse(Struct, forbid_unknown_fields=True, frozen=True):
     A name from `gapless.bridges.BRIDGES` is a bridge of your own: it gets `parameters` and no other key.
     `error` learns the error of an INS that is not corrected and starts anew every `reset` seconds;
     `increment` learns the way that GNSS goes from epoch to epoch. `features` are shown now and
-    `lags` - 1 epochs back, with `window` past errors; `reference` and `learns` say of what error.
-    `noise` is the last fix's (as in the papers) or calibrated on held-out epochs. It trains on the
-    last `samples` epochs at least `interval` seconds apart, at an outage's onset or every `train`
-    seconds, and leaves out `purge` epochs between those trained on and those held out.
+    `lags` - 1 epochs back, with `window` past errors, for `segment` epochs at a time; `reference` and
+    `learns` say of what error. `noise` is the last fix's (as in the papers) or calibrated on held-out
+    epochs. It trains on the last `samples` epochs at least `interval` seconds apart, at an outage's onset
+    or every `train` seconds, and leaves out `purge` epochs between those trained on and those held out.
     """
 
     model: str = "none"
     features: tuple[str, ...] = ()
     lags: Count = 1
     window: WholeNumber = 0
+    segment: Count = 1
     reference: Literal["gnss", "filter"] = "gnss"
     learns: tuple[Literal["position", "velocity", "attitude"], ...] = ("position", "velocity")
     axes: Literal[2, 3] = 2
@@ -97,8 +98,10 @@ def check(use: BridgeUse) -> None:
         raise ConfigError(f"bridge.features has {unknown[0]!r}; choose from {', '.join(FEATURES)}{hint}")
     if not use.features and not use.window:
         raise ConfigError("bridge shows its learner nothing; give bridge.features or bridge.window")
-    if use.model == "increment" and (use.window or use.lags > 1):
-        raise ConfigError('bridge.window and bridge.lags are for model = "error"; leave them out')
+    if use.model == "increment" and (use.window or use.lags > 1 or use.segment > 1):
+        raise ConfigError('bridge.window, lags and segment are for model = "error"; leave them out')
+    if use.segment > 1 and use.features:
+        raise ConfigError("bridge.segment goes on from past errors alone; leave bridge.features empty")
     if use.model == "error" and not use.learns:
         raise ConfigError("bridge.learns is empty; name position, velocity or both")
     if use.model == "error" and use.reference == "gnss" and "attitude" in use.learns:
@@ -216,7 +219,13 @@ def _saved(path: str, model: Model, use: BridgeUse) -> Trained | None:
             f"learner.model: {path}: {why}; give a file that gapless fuse --save-model wrote"
         ) from None
     row = model.row(model.begin([], np.zeros(3)), unknown())
-    return Trained(loads(data, path, len(row)), FilterNoise(), -math.inf, 0)
+    learner = loads(data, path, len(row))
+    answers = np.size(learner.predict(row[None, :]))
+    if answers != model.outputs:
+        raise ModelError(
+            f"{path}: answers {answers} numbers, the bridge needs {model.outputs}; save it again"
+        )
+    return Trained(learner, FilterNoise(), -math.inf, 0)
 
 
 def _seconds(value: float | str) -> float:
@@ -229,4 +238,4 @@ def _model(use: BridgeUse, sensors: Mapping[str, Sensor]) -> Model:
 
     if use.model == "increment":
         return IncrementModel(use.features, use.axes, sensors["position"])
-    return ErrorModel(use.features, use.lags, use.window, use.reference, use.learns, use.axes)
+    return ErrorModel(use.features, use.lags, use.window, use.reference, use.learns, use.axes, use.segment)

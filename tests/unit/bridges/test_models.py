@@ -52,6 +52,29 @@ def test_no_window_reaches_over_a_new_start_of_the_shadow_or_a_gap():
     assert len(model.pairs(epochs)[0]) == (10 - 5) + (10 - 5) + 20
 
 
+def test_a_segment_is_learned_and_gone_through_as_a_whole():
+    """Three errors at a time, from the last two; the row after a segment holds what it predicted last."""
+    epochs = drive(30)
+    model = ErrorModel((), 1, 2, "gnss", ("position",), 2, segment=3)
+    x, y = model.pairs(epochs)
+    assert model.outputs == y.shape[1] == 6
+    assert len(x) == 30 - 2 - 2
+    assert y[4] == pytest.approx(np.concatenate([e.gnss_error[:2] for e in epochs[6:9]]))
+    course, told = model.begin(epochs, epochs[-1].fix), np.arange(6.0)
+    for k in range(3):
+        course = model.carry(course, epochs[-1], told if k == 0 else np.full(6, np.nan))
+        assert course.error == pytest.approx([2.0 * k, 2.0 * k + 1.0])
+    assert model.row(course, epochs[-1]) == pytest.approx([2.0, 3.0, 4.0, 5.0])
+    assert model.carry(course, epochs[-1], told + 10.0).error == pytest.approx([10.0, 11.0])
+
+
+def test_no_segment_reaches_over_a_gap():
+    epochs = drive(30)
+    epochs[10] = epochs[10]._replace(dt=np.nan)
+    x, _ = ErrorModel((), 1, 2, "gnss", ("position",), 2, segment=3).pairs(epochs)
+    assert len(x) == (10 - 2 - 2) + (20 - 2 - 2)
+
+
 def test_epochs_without_an_error_are_left_out():
     epochs = drive(20)
     epochs[7] = epochs[7]._replace(gnss_error=np.full(6, np.nan))

@@ -6,7 +6,7 @@ from scipy.signal import correlate
 from sklearn.linear_model import LinearRegression
 
 from gapless.learners import make
-from gapless.learners.nar import NAR, asfp, autocorrelation, autocorrelation_order, lagged
+from gapless.learners.nar import NAR, autocorrelation, autocorrelation_order, lagged
 
 
 def test_windows_are_the_past_oldest_first():
@@ -82,9 +82,10 @@ def test_a_series_that_is_too_short_is_refused():
         NAR(make("relm")).fit(np.zeros((20, 1))).forecast(1, past=np.zeros((3, 1)))
 
 
-def test_asfp_goes_by_segments():
+def test_segments_follow_each_other():
     series = np.sin(0.2 * np.arange(100.0))[:, None]
-    model = asfp(window=8, segment=5, seed=3).fit(series)
-    assert np.array_equal(model.forecast(12), asfp(8, 5, 3).fit(series).forecast(12))
+    model = NAR(make("rbf", seed=3), order=8, segment=5).fit(series)
+    again = NAR(make("rbf", seed=3), order=8, segment=5).fit(series)
+    assert np.array_equal(model.forecast(12), again.forecast(12))
     # a sine of unit height: an RBF network of 20 bells follows it for two segments
     assert np.abs(model.forecast(10)[:, 0] - np.sin(0.2 * np.arange(100.0, 110.0))).max() < 0.1
