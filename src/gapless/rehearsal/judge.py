@@ -16,7 +16,9 @@ import numpy as np
 REFERENCE: Final = 2.0
 """Standard deviation of the aided track, by axis: errors that fixes share [m]."""
 TOGETHER: Final = 3.0
-"""So many rehearsals count as one independent one; fewer tell nothing."""
+"""So many rehearsals count as one independent one."""
+AGREE: Final = 2
+"""Rehearsals in which a bridge must be clearly better: one lucky one earns nothing."""
 CONFIDENCE: Final = 0.5
 """Standard errors by which a bridge must be better, one-sided."""
 CLEAR: Final = 0.05
@@ -82,8 +84,8 @@ class Score(NamedTuple):
     error : float
         Standard error of the mean.
     earned : bool
-        Whether it is better by `CONFIDENCE` of these, and clearly better in no fewer than `TOGETHER` and in
-        more than it is clearly worse in: one lucky rehearsal earns nothing.
+        Whether it is better by `CONFIDENCE` of these, and clearly better in no fewer than `AGREE` and in
+        more than it is clearly worse in.
     """
 
     name: str
@@ -160,7 +162,7 @@ def judged(name: str, ratios: Sequence[float]) -> Score:
     squares = float(((x - x.mean()) ** 2).sum()) + PRIOR_SCATTER * SCATTER**2
     error = math.sqrt(squares / (n - 1 + PRIOR_SCATTER) / max(1.0, n / TOGETHER))
     won, lost = int((x < -CLEAR).sum()), int((x > CLEAR).sum())
-    earned = won >= TOGETHER and won > lost and float(x.mean()) + CONFIDENCE * error < 0.0
+    earned = won >= AGREE and won > lost and float(x.mean()) + CONFIDENCE * error < 0.0
     return Score(name, n, float(x.sum()) / (n + PRIOR), error, earned)
 
 

@@ -49,6 +49,15 @@ def test_one_lucky_rehearsal_is_not_enough(luck, others):
     assert not judged("a", [luck, *[0.0] * others]).earned
 
 
+def test_two_that_agree_are_enough_if_the_gain_is_large():
+    """Two alike have a standard error of sqrt(0.5 / 3) = 0.408."""
+    assert judged("a", [-0.21] * 2).earned
+    assert not judged("a", [-0.20] * 2).earned
+    assert not judged("a", [-1.0, -0.04]).earned, "one was better, and one was a tie"
+    assert judged("a", [-2.0, -1.0, 0.5]).earned
+    assert not judged("a", [-2.0, -1.0, 0.5, 0.1]).earned, "as often worse as better"
+
+
 def test_errors_of_centimetres_are_alike():
     """Both have the track's own 2 m an axis in them."""
     told = choose(history(*[(0.3, 0.01)] * 9), ["wheels"], ()).bridges[0]
