@@ -11,20 +11,18 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from itertools import groupby
 from typing import Any, Final, Self
 
 import numpy as np
 
-from gapless import earth
 from gapless.events import Event, ImuBlock
 from gapless.exhibits import Rehearsals
 from gapless.journal import Journal
 from gapless.manner import Manner
 from gapless.navigator import Navigator
-from gapless.recording import Array, Trajectory
-from gapless.rehearsal.judge import AGES, REFERENCE, Choice, Rehearsed, Trial, choose
+from gapless.rehearsal.judge import Choice, Rehearsed, Trial, choose
 from gapless.rehearsal.shown import shown
+from gapless.rehearsal.stretch import Stretch
 from gapless.settings import Settings
 from gapless.solution import Decision
 
@@ -61,33 +59,6 @@ class Plan:
     budget: float = 0.5
 
 
-@dataclass
-class _Open:
-    """A rehearsal whose time has not passed yet."""
-
-    start: float
-    navigator: Navigator
-    events: list[Event] = field(default_factory=list)
-    track: list[tuple[float, float, float]] = field(default_factory=list)
-    aided: bool = True
-
-    @property
-    def samples(self) -> int:
-        return sum(len(e.time) for e in self.events if isinstance(e, ImuBlock))
-
-    def script(self) -> list[Event]:
-        """The events, with samples that follow each other in one block."""
-        found = list[Event]()
-        for samples, group in groupby(self.events, lambda e: isinstance(e, ImuBlock)):
-            together = list(group)
-            blocks = [event for event in together if isinstance(event, ImuBlock)]
-            found += [ImuBlock.join(blocks)] if samples else together
-        return found
-
-    def copy(self) -> _Open:
-        return replace(self, events=list(self.events), track=list(self.track))
-
-
 class Rehearsing:
     """A navigator that rehearses; it is stepped, kept and forked like one.
 
@@ -99,7 +70,7 @@ class Rehearsing:
 
     def __init__(self, navigator: Navigator, plan: Plan) -> None:
         self.navigator, self.plan = navigator, plan
-        self.open: list[_Open] = []
+        self.open: list[Stretch] = []
         self.history: tuple[Rehearsed, ...] = ()
         self.choice = choose((), plan.bridges, plan.presets)
         self.chosen: tuple[tuple[float, Choice], ...] = ()
@@ -242,11 +213,8 @@ class Rehearsing:
         """Note the rows that were written: where the navigator was, and whether GNSS held it."""
         rows = self.journal
         if self.open and self.seen < len(rows.times):
-            new = slice(self.seen, None)
-            track = [(t, x[0], x[1]) for t, x in zip(rows.times[new], rows.states[new], strict=True)]
             for one in self.open:
-                one.track += track
-                one.aided &= all(source == "gnss" for source in rows.sources[new])
+                one.watch(rows, self.seen)
         self.seen = len(rows.times)
 
     def _act(self) -> None:
@@ -257,11 +225,11 @@ class Rehearsing:
             return
         self.due = now + self.plan.every
         if self.navigator.aided:
-            self.open.append(_Open(now, self.navigator.fork()))
+            self.open.append(Stretch(now, self.navigator.fork()))
 
-    def _rehearse(self, one: _Open) -> None:
+    def _rehearse(self, one: Stretch) -> None:
         """Replay an outage in every manner that the budget allows; adopt what comes of it."""
-        if not one.aided or len(one.track) < 10 or _way(one.track) < SLOW * self.plan.length:
+        if not one.aided or len(one.track) < 10 or one.way < SLOW * self.plan.length:
             return
         cost, events, trials = one.samples, one.script(), list[Trial]()
         if not self.history:
@@ -288,13 +256,13 @@ class Rehearsing:
         presets = sorted(tried, key=tried.__getitem__)
         return [("", ""), *((b, "") for b in self.plan.bridges), *((self.choice.bridge, p) for p in presets)]
 
-    def _try(self, one: _Open, events: list[Event], bridge: str, preset: str) -> Trial:
+    def _try(self, one: Stretch, events: list[Event], bridge: str, preset: str) -> Trial:
         navigator = one.navigator.fork()
         navigator.adopt(self._manner(bridge, preset, 1.0))
         navigator.keeps_learning = False
         for event in events:
             navigator.step(event)
-        return Trial(bridge, preset, *_apart(navigator.journal.trajectory(), np.array(one.track), one.start))
+        return Trial(bridge, preset, *one.apart(navigator.journal.trajectory()))
 
     def _adopt(self) -> None:
         self.navigator.adopt(self.manner)
@@ -302,25 +270,3 @@ class Rehearsing:
     def _manner(self, bridge: str, preset: str, scale: float) -> Manner:
         tuned = self.plan.presets[preset] if preset else self.settings.manner
         return replace(tuned, voices=self.plan.bridges.get(bridge, ()), scale=scale)
-
-
-def _way(track: list[tuple[float, float, float]]) -> float:
-    """Length of a track, or nearly: chords of ten rows, for a standing car's fixes wander [m]."""
-    points = np.array(track)[::10, 1:]
-    r_m, r_n = earth.radii(np.sin(points[0, 0]))
-    steps = np.diff(points, axis=0) * [r_m, r_n * math.cos(points[0, 0])]
-    return float(np.hypot(*steps.T).sum())
-
-
-def _apart(rows: Trajectory, track: Array, start: float) -> tuple[float, tuple[float, ...]]:
-    """Largest distance from the aided track [m], and squared Mahalanobis distances `AGES` apart."""
-    rows = rows.take(rows.time <= track[-1, 0])
-    here = np.column_stack([np.interp(rows.time, track[:, 0], track[:, 1 + k]) for k in range(2)])
-    r_m, r_n = earth.radii(np.sin(here[:, 0]))
-    north = (rows.lla[:, 0] - here[:, 0]) * r_m
-    east = (rows.lla[:, 1] - here[:, 1]) * r_n * np.cos(here[:, 0])
-    nn, ee = (rows.sd[:, k] ** 2 + REFERENCE**2 for k in range(2))
-    square = ee * north**2 - 2.0 * rows.horizontal * north * east + nn * east**2
-    nees = square / (nn * ee - rows.horizontal**2)
-    at = np.searchsorted(rows.time, np.arange(start + AGES, track[-1, 0], AGES))
-    return float(np.hypot(north, east).max()), tuple(nees[at[at < len(nees)]].tolist())
