@@ -49,7 +49,7 @@ def training() -> None:
     print(f"{'learner':>14} {'outputs':>7} {'ms':>8} {'rbf':>7} {'mlp (L-BFGS)':>13} {'mlp (Adam)':>11}")
     for outputs in (2, 4):
         x, y = problem(np.random.default_rng(outputs), outputs)
-        models = {name: make(name) for name in (*FAST, "rbf", "mlp")}
+        models = {name: make(name) for name in (*FAST, "by_part", "rbf", "mlp")}
         models["mlp (Adam)"] = Scaled(MLPRegressor(hidden_layer_sizes=(20,), random_state=0))
         seconds: dict[str, list[float]] = {name: [] for name in models}
         for _ in range(TURNS):

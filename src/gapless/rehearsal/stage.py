@@ -20,7 +20,8 @@ from gapless.exhibits import Rehearsals
 from gapless.journal import Journal
 from gapless.manner import Manner
 from gapless.navigator import Navigator
-from gapless.rehearsal.judge import Choice, Rehearsed, Trial, choose
+from gapless.rehearsal.judge import Choice, Rehearsed, choose
+from gapless.rehearsal.replay import Candidate, Replay
 from gapless.rehearsal.shown import shown
 from gapless.rehearsal.stretch import Stretch
 from gapless.settings import Settings
@@ -32,6 +33,8 @@ SETTLE: Final = 45.0
 
 RESERVE: Final = 12
 """Candidates that may be tried on credit, so that there is a choice early in a drive."""
+PONDER: Final = 5.0
+"""A rehearsal is replayed and adopted within so many seconds after its end, a slice with each sample [s]."""
 SLOW: Final = 1.5
 """An outage through which the car mostly stood tells nothing of what would bridge one: mean speed [m/s]."""
 
@@ -71,6 +74,7 @@ class Rehearsing:
     def __init__(self, navigator: Navigator, plan: Plan) -> None:
         self.navigator, self.plan = navigator, plan
         self.open: list[Stretch] = []
+        self.work: list[Replay] = []
         self.history: tuple[Rehearsed, ...] = ()
         self.choice = choose((), plan.bridges, plan.presets)
         self.chosen: tuple[tuple[float, Choice], ...] = ()
@@ -124,6 +128,7 @@ class Rehearsing:
                 self.navigator.step(part)
                 self._keep(part)
                 self._watch()
+                self._replay(float(part.time[-1]))
                 self.credit += self.plan.budget * (end - first)
                 first = end
             else:
@@ -138,7 +143,7 @@ class Rehearsing:
         """
         opened = [o.copy() for o in self.open]
         told = self.history, self.choice, self.chosen
-        return self.navigator.snapshot(), opened, told, self.due, self.credit
+        return self.navigator.snapshot(), opened, self._begun(), told, self.due, self.credit
 
     def restore(self, snapshot: Any) -> None:
         """Go back to a snapshot.
@@ -147,11 +152,12 @@ class Rehearsing:
         ----------
         snapshot : object
         """
-        kept, opened, told, self.due, self.credit = snapshot
+        kept, opened, begun, told, self.due, self.credit = snapshot
         self.history, self.choice, self.chosen = told
         self.navigator.restore(kept)
         self.seen = len(self.journal.times)
         self.open = [o.copy() for o in opened]
+        self.work = [replay.copy() for replay in begun]
 
     def fork(self) -> Self:
         """A cheap copy that can run ahead, with a journal of its own.
@@ -163,7 +169,7 @@ class Rehearsing:
         new = object.__new__(type(self))
         new.__dict__.update(self.__dict__)
         new.navigator = self.navigator.fork()
-        new.open, new.seen = [o.copy() for o in self.open], 0
+        new.open, new.work, new.seen = [o.copy() for o in self.open], self._begun(), 0
         return new
 
     def decisions(self, start: float) -> tuple[Decision, ...]:
@@ -202,7 +208,11 @@ class Rehearsing:
     # --- acting ---------------------------------------------------------------------------------
 
     def _next(self) -> float:
-        return min(self.due, *(o.start + self.plan.length for o in self.open), math.inf)
+        ends = [one.start + self.plan.length for one in self.open]
+        return min(self.due, *ends, *(replay.end + PONDER for replay in self.work), math.inf)
+
+    def _begun(self) -> list[Replay]:
+        return [replay.copy() for replay in self.work]
 
     def _keep(self, event: Event) -> None:
         if event:
@@ -220,31 +230,41 @@ class Rehearsing:
     def _act(self) -> None:
         """Do what is due before the next sample."""
         now = self._next()
+        if self.work and self.work[0].end + PONDER <= now:
+            self._conclude(self.work.pop(0))
+            return
         if self.open and self.open[0].start + self.plan.length <= now:
-            self._rehearse(self.open.pop(0))
+            self._consider(self.open.pop(0), now)
             return
         self.due = now + self.plan.every
         if self.navigator.aided:
             self.open.append(Stretch(now, self.navigator.fork()))
 
-    def _rehearse(self, one: Stretch) -> None:
-        """Replay an outage in every manner that the budget allows; adopt what comes of it."""
+    def _consider(self, one: Stretch, end: float) -> None:
+        """Have a stretch replayed in every manner that the budget allows, where it can tell anything."""
         if not one.aided or len(one.track) < 10 or one.way < SLOW * self.plan.length:
             return
-        cost, events, trials = one.samples, one.script(), list[Trial]()
-        if not self.history:
+        cost = one.samples
+        if not self.history and not self.work:
             self.credit = max(self.credit, RESERVE * cost)
-        if self.credit < cost * (1 + len(self.plan.bridges)):
+        least = 1 + len(self.plan.bridges)
+        if self.credit < cost * least:
             return
-        for bridge, preset in self._order():
-            if trials and self.credit < cost:
-                break
-            self.credit -= cost
-            trials.append(self._try(one, events, bridge, preset))
-        self.history = (*self.history, Rehearsed(one.start, one.start + self.plan.length, tuple(trials)))
+        tried = self._order()[: int(self.credit / cost)]
+        self.credit -= cost * len(tried)
+        self.work.append(Replay(one, [Candidate(b, p, self._manner(b, p, 1.0)) for b, p in tried], end))
+
+    def _replay(self, now: float) -> None:
+        """A slice of what is to be replayed; whatever is ready before its time waits for it."""
+        for replay in self.work:
+            replay.advance(min(1.0, (now - replay.end) / PONDER))
+
+    def _conclude(self, replay: Replay) -> None:
+        """Adopt what comes of a rehearsal."""
+        self.history = (*self.history, replay.finish())
         choice = choose(self.history, self.plan.bridges, self.plan.presets)
         if choice[:2] != self.choice[:2]:
-            self.chosen = (*self.chosen, (one.start + self.plan.length, choice))
+            self.chosen = (*self.chosen, (replay.end + PONDER, choice))
         self.choice = choice
         self._adopt()
 
@@ -255,14 +275,6 @@ class Rehearsing:
             tried[trial.preset] += 1
         presets = sorted(tried, key=tried.__getitem__)
         return [("", ""), *((b, "") for b in self.plan.bridges), *((self.choice.bridge, p) for p in presets)]
-
-    def _try(self, one: Stretch, events: list[Event], bridge: str, preset: str) -> Trial:
-        navigator = one.navigator.fork()
-        navigator.adopt(self._manner(bridge, preset, 1.0))
-        navigator.keeps_learning = False
-        for event in events:
-            navigator.step(event)
-        return Trial(bridge, preset, *one.apart(navigator.journal.trajectory()))
 
     def _adopt(self) -> None:
         self.navigator.adopt(self.manner)

@@ -130,6 +130,26 @@ def test_the_budget_limits_the_trials(setup, feed):
     assert len(poor.history) < len(rich.history) or sum(len(one.trials) for one in rich.history) <= 12
 
 
+def test_no_live_sample_waits_for_a_whole_replay(setup, feed, whole, monkeypatch):
+    """Two candidates of 20 s within five: eight times real time, and each sample its share of it."""
+    most, shared, step = [0], [0], Navigator.step
+
+    def counted(self, event):
+        if not self.keeps_learning and isinstance(event, ImuBlock):
+            shared[0] += len(event.time)
+        step(self, event)
+
+    monkeypatch.setattr(Navigator, "step", counted)
+    stage = fresh(setup)
+    for event in singles(feed):
+        shared[0] = 0
+        stage.step(event)
+        most.append(shared[0])
+    assert stage.history == whole.history
+    assert sum(most) == sum(len(one.trials) for one in whole.history) * 20 * 50
+    assert max(most) <= 2 * 20 / 5.0 + 1
+
+
 def test_a_standing_car_rehearses_nothing():
     """This drive stops for half a minute: what lies mostly in the stop is left out, what does not is not."""
     log = simulate("urban", "consumer", 150.0, 6, rate=50.0, chassis=CAR)
