@@ -1,4 +1,4 @@
-"""What the IMU felt over a window of time, out of the blocks that came."""
+"""What the IMU felt over a window of time."""
 
 from __future__ import annotations
 
@@ -29,13 +29,13 @@ class Felt(NamedTuple):
     gap: float
 
 
-def felt(blocks: list[ImuBlock], begin: float, end: float) -> Felt | None:
+def felt(block: ImuBlock, begin: float, end: float) -> Felt | None:
     """Samples between two times.
 
     Parameters
     ----------
-    blocks : list of ImuBlock
-        They follow each other, and may reach beyond the window.
+    block : ImuBlock
+        It may reach beyond the window.
     begin, end : float
         [s]
 
@@ -44,11 +44,7 @@ def felt(blocks: list[ImuBlock], begin: float, end: float) -> Felt | None:
     Felt or None
         None where there are fewer than three.
     """
-    wanted = [block.within(begin, end) for block in blocks if block.time[0] <= end]
-    block = wanted[0] if len(wanted) == 1 else ImuBlock.join(wanted) if wanted else None
-    if block is None:
-        return None
-    rows = _rows(*block)
+    rows = _rows(*block.within(begin, end))
     rows = rows[rows[:, 0].searchsorted(begin) :]
     return Felt(rows, *_distances(rows[:, 0])) if len(rows) >= 3 else None
 

@@ -10,7 +10,6 @@ it and when all of it has lasted. A drive without a labelled stop gets no zero-v
 from __future__ import annotations
 
 import math
-from copy import copy
 from dataclasses import dataclass, field
 from typing import Any, ClassVar, Self
 
@@ -274,7 +273,8 @@ class Stillness(Constraint):
 
     def copy(self) -> Self:
         """An independent copy; see `Constraint.copy`."""
-        new = copy(self)
+        new = object.__new__(type(self))
+        vars(new).update(vars(self))  # copy.copy takes ten times as long, and this is done at every block
         for name in ("ring", "count", "mean", "var", "smooth", "spread"):
             setattr(new, name, getattr(self, name).copy())
         return new
