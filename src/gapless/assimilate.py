@@ -20,6 +20,8 @@ from gapless.tape import Tape
 
 MISLED = 60.0
 """For so long after its last word a bridge is suspected where a filter turns out to be wrong [s]."""
+WITNESS = 1.0
+"""For so long after it was believed an odometer is a witness of the speed [s]."""
 DENSITIES = 5
 """How many of the noise parameters are densities; the rest are rates."""
 
@@ -56,7 +58,11 @@ def assimilate(
     nis, s, hp = assess(b.p, ROW, n, o.z, o.H, o.R)
     verdict = Verdict(None)
     if math.isfinite(nis):
-        verdict = state.adaptation[kind_of(channel)].judge(Innovation(channel, time, o.z, s, o.R, nis))
+        denied = channel == "velocity" and _denied(state, time, o.z)
+        told = Innovation(channel, time, o.z, s, o.R, nis, denied)
+        verdict = state.adaptation[kind_of(channel)].judge(told)
+        if verdict.r is o.R and not verdict.widen:
+            state.agreed[channel] = time
     journal.innovation(channel, time, o.z, s, nis, _factor(verdict.r, o.R))
     _process(state, settings, verdict)
     if verdict.widen:
@@ -81,6 +87,15 @@ def assimilate(
         inject(b.x, dx)
         b.trail.shift(dx[3:6])
     return True
+
+
+def _denied(state: State, time: float, z: Array) -> bool:
+    """Whether it is mostly a change of speed, and an odometer that was just believed does not see it."""
+    if time - state.agreed.get("odometer", -math.inf) > WITNESS:
+        return False
+    v = state.belief.v_n[:2]
+    off = math.hypot(*(v + z[:2])) - math.hypot(*v)
+    return abs(off) > 0.5 * math.hypot(*z[:2])
 
 
 def _looked_at(belief: Belief, h: Array) -> tuple[Array, int]:

@@ -44,6 +44,8 @@ class State:
         Readings that hold for a time still to come, in its order.
     heard : dict of str to float
         When each channel was last used [s].
+    agreed : dict of str to float
+        When each channel was last believed as it is [s].
     clock : float
         End of the last sample taken in [s].
     next_row : float
@@ -64,6 +66,7 @@ class State:
     manner: Manner
     pending: list[Reading] = field(default_factory=list)
     heard: dict[str, float] = field(default_factory=dict)
+    agreed: dict[str, float] = field(default_factory=dict)
     clock: float = -math.inf
     next_row: float = -math.inf
     aligned: bool = False
@@ -87,6 +90,7 @@ class State:
             self.manner,
             list(self.pending),
             dict(self.heard),
+            dict(self.agreed),
             self.clock,
             self.next_row,
             self.aligned,

@@ -14,7 +14,7 @@ from gapless.filters.adaptation.gate import Gate
 from gapless.filters.adaptation.relock import SOFT
 from gapless.motion import displace
 from gapless.navigator import Navigator
-from gapless.simulate import Receiver, simulate
+from gapless.simulate import Receiver, WheelSensor, simulate
 
 START = 60.0
 """Driving, and well settled [s]."""
@@ -124,6 +124,44 @@ def test_r_is_never_made_smaller():
         verdict = gate.judge(told(channel, 0.1 * k, rng.normal(0.0, 10.0, m), nis, m))
         assert verdict.r is None or (verdict.r >= np.eye(m)).all()
         assert (verdict.r is not None and (verdict.r == np.eye(m)).all()) or nis > SOFT[m]
+
+
+def driven(speed, lasting):
+    """How far a drive with an odometer is led astray by velocities that are wrong along the way."""
+    log = simulate(
+        "urban", "consumer", 130.0, 4, vehicle=CAR, receiver=Receiver(rate=1.0), wheels=WheelSensor(rate=10.0)
+    )
+    g = log.gnss
+    moving = np.hypot(*g.v_n[:, :2].T)
+    begin = g.time[(g.time > START) & (moving > 8.0)][0]
+    struck = (g.time >= begin) & (g.time < begin + lasting)
+    along = g.v_n * np.array([1.0, 1.0, 0.0]) / np.maximum(moving, 1.0)[:, None]
+    unsure = np.where(
+        struck[:, None], 30.0, g.sd_position
+    )  # a receiver that errs in speed is not sure of its place
+    bad = replace(log, gnss=replace(g, v_n=g.v_n + speed * struck[:, None] * along, sd_position=unsure))
+    until, setup = begin + lasting + 1.5, prepared(log, "exact")
+    told, honest = (
+        fold(Navigator(setup), events(one.slice(-np.inf, until), {"odometer": 0.0})) for one in (bad, log)
+    )
+    return apart(told, honest)
+
+
+def test_wheels_that_are_believed_deny_a_speed_that_a_receiver_makes_up():
+    """Eight seconds of 6 m/s too much, as an urban receiver gave them, its place unknown to 30 m: 48 m."""
+    assert driven(6.0, 8.0) < 5.0
+
+
+def test_what_is_denied_must_last():
+    """Of a run of velocities that agree, the first are believed after 5 s, or after 20 s where denied."""
+    for denied, seconds in ((False, 5), (True, 20)):
+        gate = Gate()
+        gate.judge(told("velocity", 0.0, np.zeros(3), 1.0, 3))
+        said = [
+            gate.judge(told("velocity", 0.5 * k, np.full(3, 5.0), 1e3, 3)._replace(denied=denied)).widen
+            for k in range(1, 60)
+        ]
+        assert said.index(True) == 2 * seconds
 
 
 def test_a_poisoned_observation_is_refused():

@@ -34,6 +34,8 @@ class Innovation(NamedTuple):
         As stated, or as an earlier rule left it.
     nis : float
         z' S^-1 z.
+    denied : bool
+        Whether another sensor, believed a moment ago, says that it is not the filter that is wrong.
     """
 
     channel: str
@@ -42,6 +44,7 @@ class Innovation(NamedTuple):
     s: Array
     r: Array
     nis: float
+    denied: bool = False
 
     @property
     def hph(self) -> Array:

@@ -54,7 +54,7 @@ class Igg3:
 
     def judge(self, innovation: Innovation) -> Verdict:
         """R with the doubtful axes' variances enlarged; see `Adaptation.judge`."""
-        _, _, z, s, r, _ = innovation
+        z, s, r = innovation.z, innovation.s, innovation.r
         sd = np.sqrt(np.diag(r))
         size = np.abs(r @ np.linalg.solve(s, z)) / sd
         recent = self.recent.get(innovation.channel)

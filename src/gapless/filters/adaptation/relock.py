@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import Annotated, ClassVar, NamedTuple, Self
+from typing import Annotated, ClassVar, Final, NamedTuple, Self
 
 import numpy as np
 from msgspec import Meta, Struct
@@ -24,6 +24,9 @@ LARGE = {"position": (30.0, math.inf), "velocity": (3.0, 60.0)}
 left to an inflated R: a fix that is a few metres wrong for some seconds is common, a filter that is 30 m
 wrong beside good fixes is not), and beyond what it is the reading that is absurd (no filter beside good
 fixes is 60 m/s wrong)."""
+
+OBSTINATE: Final = 20.0
+"""For so long must fixes that another sensor denies agree with each other; receivers err for less [s]."""
 
 
 class RelockTable(Struct, forbid_unknown_fields=True, frozen=True):
@@ -80,11 +83,11 @@ class Relock:
 
     def judge(self, innovation: Innovation) -> Verdict:
         """R as stated, with or without doubt in the filter; see `Adaptation.judge`."""
-        channel, time, z, _, r, nis = innovation
+        channel, time, z, r, nis = innovation[:3] + innovation[4:6]
         doubted = nis > soft_bound(z.size) or math.isnan(nis)
         if doubted:
             run = self._extend(channel, time, z, np.sqrt(np.diag(r)))
-            if not self._believe(channel, run, z):
+            if not self._believe(channel, run, z, innovation.denied):
                 return Verdict(r)
         self.accepted[channel] = time
         self.runs.pop(channel, None)
@@ -104,8 +107,8 @@ class Relock:
         self.runs[channel] = run
         return run
 
-    def _believe(self, channel: str, run: _Run, z: Array) -> bool:
-        if channel not in LARGE:
+    def _believe(self, channel: str, run: _Run, z: Array, denied: bool) -> bool:
+        if channel not in LARGE or (denied and run.last - run.start < OBSTINATE):
             return False
         if run.after_gap:
             return run.length >= 2 and run.last - run.start >= 0.5
