@@ -83,11 +83,11 @@ class Relock:
 
     def judge(self, innovation: Innovation) -> Verdict:
         """R as stated, with or without doubt in the filter; see `Adaptation.judge`."""
-        channel, time, z, r, nis = innovation[:3] + innovation[4:6]
+        channel, time, z, _, r, nis, denied = innovation
         doubted = nis > soft_bound(z.size) or math.isnan(nis)
         if doubted:
             run = self._extend(channel, time, z, np.sqrt(np.diag(r)))
-            if not self._believe(channel, run, z, innovation.denied):
+            if not self._believe(channel, run, z, denied):
                 return Verdict(r)
         self.accepted[channel] = time
         self.runs.pop(channel, None)
