@@ -196,9 +196,9 @@ class Wheels:
         speeds = np.sqrt((v * v).sum(axis=1))
         if speeds.min() < CRAWL:
             return None
-        begin = time - WINDOW - ROOM
         if not self.blocks:
             return None
+        begin = time - WINDOW - ROOM
         self.blocks = [ImuBlock.join(self.blocks).within(begin, math.inf)]  # what is felt goes ahead of time
         window = felt(self.blocks[0], begin, time)
         if window is None:

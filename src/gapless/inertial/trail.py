@@ -11,8 +11,6 @@ from gapless.recording import Array
 
 GRAVITY = 9.8
 """Enough for telling what gravity did, and what a tilt feigns [m/s^2]."""
-
-
 SPARE: Final = 64
 """Rows that are free after a trail grew."""
 

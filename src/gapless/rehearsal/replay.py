@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import cached_property
 from typing import NamedTuple
 
 from gapless.events import Event, ImuBlock
@@ -12,8 +13,8 @@ from gapless.rehearsal.judge import Rehearsed, Trial
 from gapless.rehearsal.stretch import Stretch
 
 
-class Candidate(NamedTuple):
-    """One that is tried.
+class Attempt(NamedTuple):
+    """One candidate, as it is tried.
 
     Parameters
     ----------
@@ -34,22 +35,27 @@ class Replay:
     ----------
     stretch : Stretch
         Not changed any more.
-    candidates : sequence of Candidate
+    attempts : sequence of Attempt
     end : float
         Of the stretch [s].
+
+    Attributes
+    ----------
+    cost : int
+        Samples to be replayed in all.
     """
 
-    def __init__(self, stretch: Stretch, candidates: Sequence[Candidate], end: float) -> None:
-        self.stretch, self.candidates, self.end = stretch, tuple(candidates), end
+    def __init__(self, stretch: Stretch, attempts: Sequence[Attempt], end: float) -> None:
+        self.stretch, self.attempts, self.end = stretch, tuple(attempts), end
+        self.cost = stretch.samples * len(self.attempts)
         self.trials: list[Trial] = []
         self.done = 0
         self._left: list[Event] = []
         self._navigator: Navigator | None = None
 
-    @property
-    def cost(self) -> int:
-        """Samples to be replayed in all."""
-        return self.stretch.samples * len(self.candidates)
+    @cached_property
+    def _script(self) -> list[Event]:
+        return self.stretch.script()
 
     def advance(self, share: float) -> None:
         """Go on until some share of all samples has been replayed.
@@ -82,13 +88,13 @@ class Replay:
         -------
         Replay
         """
-        return Replay(self.stretch, self.candidates, self.end)
+        return Replay(self.stretch, self.attempts, self.end)
 
     def _slice(self, most: int) -> int:
         """Step so many samples at most, and the readings that follow them; how many they were."""
         if self._navigator is None:
-            self._navigator, self._left = self.stretch.navigator.fork(), self.stretch.script()
-            self._navigator.adopt(self.candidates[len(self.trials)].manner)
+            self._navigator, self._left = self.stretch.navigator.fork(), list(self._script)
+            self._navigator.adopt(self.attempts[len(self.trials)].manner)
             self._navigator.keeps_learning = False
         taken = 0
         while self._left and (taken == 0 or not isinstance(self._left[0], ImuBlock)):
@@ -103,7 +109,7 @@ class Replay:
 
     def _judge(self) -> None:
         assert self._navigator is not None
-        who = self.candidates[len(self.trials)]
+        who = self.attempts[len(self.trials)]
         apart = self.stretch.apart(self._navigator.journal.trajectory())
         self.trials.append(Trial(who.bridge, who.preset, *apart))
         self._navigator = None

@@ -21,7 +21,7 @@ from gapless.journal import Journal
 from gapless.manner import Manner
 from gapless.navigator import Navigator
 from gapless.rehearsal.judge import Choice, Rehearsed, choose
-from gapless.rehearsal.replay import Candidate, Replay
+from gapless.rehearsal.replay import Attempt, Replay
 from gapless.rehearsal.shown import shown
 from gapless.rehearsal.stretch import Stretch
 from gapless.settings import Settings
@@ -252,7 +252,7 @@ class Rehearsing:
             return
         tried = self._order()[: int(self.credit / cost)]
         self.credit -= cost * len(tried)
-        self.work.append(Replay(one, [Candidate(b, p, self._manner(b, p, 1.0)) for b, p in tried], end))
+        self.work.append(Replay(one, [Attempt(b, p, self._manner(b, p, 1.0)) for b, p in tried], end))
 
     def _replay(self, now: float) -> None:
         """A slice of what is to be replayed; whatever is ready before its time waits for it."""

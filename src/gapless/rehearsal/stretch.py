@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, field, replace
 from itertools import groupby
 
@@ -12,7 +11,7 @@ from gapless import earth
 from gapless.events import Event, ImuBlock
 from gapless.journal import Journal
 from gapless.navigator import Navigator
-from gapless.recording import Trajectory
+from gapless.recording import Array, Trajectory
 from gapless.rehearsal.judge import AGES, REFERENCE
 
 
@@ -49,9 +48,7 @@ class Stretch:
     def way(self) -> float:
         """Length of the track, or nearly: chords of ten rows, for a standing car's fixes wander [m]."""
         points = np.array(self.track)[::10, 1:]
-        r_m, r_n = earth.radii(np.sin(points[0, 0]))
-        steps = np.diff(points, axis=0) * [r_m, r_n * math.cos(points[0, 0])]
-        return float(np.hypot(*steps.T).sum())
+        return float(np.hypot(*_metres(np.diff(points, axis=0), points[1:, 0])).sum())
 
     def watch(self, rows: Journal, since: int) -> None:
         """Note rows that were written with GNSS.
@@ -97,11 +94,15 @@ class Stretch:
         track = np.array(self.track)
         rows = rows.take(rows.time <= track[-1, 0])
         here = np.column_stack([np.interp(rows.time, track[:, 0], track[:, 1 + k]) for k in range(2)])
-        r_m, r_n = earth.radii(np.sin(here[:, 0]))
-        north = (rows.lla[:, 0] - here[:, 0]) * r_m
-        east = (rows.lla[:, 1] - here[:, 1]) * r_n * np.cos(here[:, 0])
+        north, east = _metres(rows.lla[:, :2] - here, here[:, 0])
         nn, ee = (rows.sd[:, k] ** 2 + REFERENCE**2 for k in range(2))
         square = ee * north**2 - 2.0 * rows.horizontal * north * east + nn * east**2
         nees = square / (nn * ee - rows.horizontal**2)
         at = np.searchsorted(rows.time, np.arange(self.start + AGES, track[-1, 0], AGES))
         return float(np.hypot(north, east).max()), tuple(nees[at[at < len(nees)]].tolist())
+
+
+def _metres(away: Array, latitude: Array) -> tuple[Array, Array]:
+    """North and east of small differences in latitude and longitude [m]."""
+    r_m, r_n = earth.radii(np.sin(latitude))
+    return away[:, 0] * r_m, away[:, 1] * r_n * np.cos(latitude)
