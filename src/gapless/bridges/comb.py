@@ -10,6 +10,7 @@ import numpy as np
 
 from gapless._numba import kernel
 from gapless.bridges.knots import KNOTS, shares
+from gapless.bridges.loudness import SILENT, louder, too_quiet
 from gapless.bridges.orders import BINS, CHANNELS, LOWEST, ORDERS, STEP, WIDTH, Spectrum, evidence, gather
 from gapless.recording import Array
 
@@ -41,12 +42,15 @@ class Comb:
         Of a single spectrum's log power, by channel.
     mean : ndarray, shape (6, BINS)
         Mean spectrum over frequency: what stays where it is when the speed changes.
+    levels : ndarray, shape (knots, 3)
+        How loud driving is; see `loudness`.
     """
 
     height: Array
     error: Array
     variance: Array
     mean: Array
+    levels: Array
 
     @cached_property
     def weight(self) -> Array:
@@ -74,6 +78,21 @@ class Comb:
         left = np.ascontiguousarray((heard.log - self.mean).T)
         return evidence(left, heard.top, self.weight, self.cost, speeds)
 
+    def too_quiet(self, heard: Spectrum, speeds: Array) -> Array:
+        """Log likelihood that driving loses against standing by how quiet it is; see `loudness.too_quiet`.
+
+        Parameters
+        ----------
+        heard : Spectrum
+        speeds : ndarray, shape (k,)
+            [m/s]
+
+        Returns
+        -------
+        ndarray, shape (k,)
+        """
+        return too_quiet(self.levels, heard.level, speeds)
+
 
 @dataclass
 class Memory:
@@ -89,6 +108,8 @@ class Memory:
         Sum over spectra by frequency.
     speeds : ndarray, shape (SPEED_BINS,)
         Spectra by speed.
+    levels : ndarray, shape (knots, 3)
+        Sums of how loud they were; see `loudness`.
     windows : float
     """
 
@@ -98,6 +119,7 @@ class Memory:
     square: Array
     mean: Array
     speeds: Array
+    levels: Array
     windows: float = 0.0
 
     @classmethod
@@ -120,6 +142,7 @@ class Memory:
             np.zeros(CHANNELS),
             np.zeros((CHANNELS, BINS)),
             np.zeros(SPEED_BINS),
+            SILENT,
         )
 
     def after(self, heard: Spectrum) -> Memory:
@@ -142,7 +165,8 @@ class Memory:
         speeds = self.speeds * keep
         speeds[min(SPEED_BINS - 1, int(heard.speed / SPEED_BIN))] += 1.0
         mean, windows = self.mean * keep + heard.log, self.windows * keep + 1.0
-        return Memory(heard.top, total, count, square, mean, speeds, windows)
+        levels = louder(self.levels, keep, heard.level, heard.speed)
+        return Memory(heard.top, total, count, square, mean, speeds, levels, windows)
 
     def comb(self) -> Comb:
         """What is left over orders when the mean spectrum and the trend are taken away, at all speeds.
@@ -167,7 +191,7 @@ class Memory:
         count = self.count.sum(axis=0)
         spread = self.square - (fixed.sum(axis=0) ** 2 / np.maximum(count, 1.0)).sum(axis=1)
         variance = np.maximum(spread / max(count.sum(), 1.0), 0.05)
-        return Left(self.total - fixed, self.count, variance, mean)
+        return Left(self.total - fixed, self.count, variance, mean, self.levels)
 
 
 @dataclass(frozen=True, eq=False)
@@ -182,12 +206,15 @@ class Left:
         Of a single spectrum's log power.
     mean : ndarray, shape (6, BINS)
         The mean spectrum.
+    levels : ndarray, shape (knots, 3)
+        How loud they were.
     """
 
     total: Array
     count: Array
     variance: Array
     mean: Array
+    levels: Array
 
     def common(self) -> tuple[Array, Array]:
         """Spectra that count, `DOUBT` among them, and the mean over all speeds without its trend.
@@ -213,7 +240,7 @@ class Left:
         Comb
         """
         doubt = self.variance[:, None] / count
-        return Comb(shrunk(raw, doubt), np.sqrt(doubt), self.variance, self.mean)
+        return Comb(shrunk(raw, doubt), np.sqrt(doubt), self.variance, self.mean, self.levels)
 
 
 def shrunk(raw: Array, doubt: Array) -> Array:

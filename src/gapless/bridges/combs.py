@@ -6,7 +6,7 @@ grow and fade as they pass resonances of the car. So there is not one comb but o
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Self
 
 import numpy as np
@@ -64,4 +64,4 @@ class Combs:
         Comb
         """
         here = np.tensordot(shares(np.array([speed]))[0], self.others, axes=1)
-        return Comb(self.common.height + here, self.common.error, self.common.variance, self.common.mean)
+        return replace(self.common, height=self.common.height + here)

@@ -32,6 +32,8 @@ LOWEST, STEP, ORDERS = 0.2, 0.01, 311
 """First order of a template, distance of orders, and how many there are [cycles/m]."""
 BASE: Final = 31
 """Bins of the running median, every `PAD`-th one: those between are no news. 7.75 Hz in all."""
+RUMBLE: Final = 3.0
+"""What is slower than this is the car's way, not its shaking [Hz]."""
 TINY: Final = 1e-12
 
 
@@ -145,11 +147,14 @@ class Spectrum(NamedTuple):
         No bin from this frequency on counts [Hz].
     speed : float
         Mean speed in the window [m/s].
+    level : float
+        Loudness: mean over rates and forces of the log of what their power spectra hold in sum.
     """
 
     log: Array
     top: float
     speed: float
+    level: float
 
 
 def spectrum(samples: Array, times: Array, speeds: Array, end: float, top: float) -> Spectrum:
@@ -174,7 +179,29 @@ def spectrum(samples: Array, times: Array, speeds: Array, end: float, top: float
     x = warp(samples, times, speeds, end - WINDOW, end, n)
     f = np.fft.rfft(x, PAD * n, axis=1)
     inside = (times >= end - WINDOW) & (times <= end)
-    return Spectrum(whiten(f.real**2 + f.imag**2), min(top, TOP), float(speeds[inside].mean()))
+    power, top = f.real**2 + f.imag**2, min(top, TOP)
+    return Spectrum(whiten(power), top, float(speeds[inside].mean()), loudness(power, top, n))
+
+
+def loudness(power: Array, top: float, n: int) -> float:
+    """Mean over rates and forces of the log of their summed power between `RUMBLE` and a frequency.
+
+    Parameters
+    ----------
+    power : ndarray, shape (6, k)
+        Of a window padded to `PAD` times its length.
+    top : float
+        [Hz]
+    n : int
+        Points of the window.
+
+    Returns
+    -------
+    float
+        Half of it: of an amplitude.
+    """
+    heard = power[:, int(RUMBLE / WIDTH) : int(top / WIDTH)].sum(axis=1) / n**2 + TINY
+    return float(0.25 * (np.log(heard[:3].sum()) + np.log(heard[3:].sum())))
 
 
 @kernel

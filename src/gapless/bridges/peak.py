@@ -78,7 +78,7 @@ def peak(comb: Comb, heard: Spectrum, sd: float, trust: Trust) -> Peak | None:
     if audible.sum() < 5:
         return None
     ratio = np.exp(trust.temper * comb.evidence(heard, speeds[audible]))
-    log[audible] = np.log((1.0 - trust.deaf) * ratio + trust.deaf)
+    log[audible] = np.log((1.0 - trust.deaf) * ratio + trust.deaf) + comb.too_quiet(heard, speeds[audible])
     prior = np.exp(-0.5 * ((speeds - heard.speed) / sd) ** 2)
     posterior = log + np.log(prior)
     k = int(posterior.argmax())

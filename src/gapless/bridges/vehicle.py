@@ -12,7 +12,7 @@ import numpy as np
 from gapless.bridges.comb import Memory
 from gapless.errors import ConfigError
 
-KIND, VERSION = "gapless wheels", 2
+KIND, VERSION = "gapless wheels", 3
 TRUST: Final = 60.0
 """Spectra that an earlier drive counts for at most: tyres wear, and boxes are moved."""
 LARGEST: Final = 2_000_000
@@ -61,7 +61,7 @@ def recalled(path: str) -> Memory:
     except (ValueError, KeyError, TypeError, RecursionError, OverflowError) as error:
         raise ConfigError(f"bridge.parameters.vehicle: {path}: no car's wheels ({error}); {cure}") from None
     less = min(1.0, TRUST / max(memory.windows, 1e-9))
-    sums = ("total", "count", "square", "mean", "speeds", "windows")
+    sums = ("total", "count", "square", "mean", "speeds", "levels", "windows")
     return replace(memory, **{name: getattr(memory, name) * less for name in sums})
 
 
@@ -85,4 +85,6 @@ def _parsed(data: bytes) -> Memory:
     for name in ("count", "square", "speeds", "windows", "top"):
         if np.min(found[name]) < 0.0:
             raise ValueError(f"{name} is negative")
+    if np.min(found["levels"][:, ::2]) < 0.0:
+        raise ValueError("levels hold a negative count or square")
     return Memory(**found)

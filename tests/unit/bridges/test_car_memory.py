@@ -16,7 +16,7 @@ from gapless.errors import ConfigError
 def memory():
     rng, found = np.random.default_rng(1), Memory.empty(47.0)
     for _ in range(200):
-        found = found.after(Spectrum(rng.standard_normal((6, BINS)), 40.0, rng.uniform(4.0, 20.0)))
+        found = found.after(Spectrum(rng.standard_normal((6, BINS)), 40.0, rng.uniform(4.0, 20.0), -2.0))
     return found
 
 

@@ -21,7 +21,7 @@ def spectra(n, seed=0, lines=LINES, tone=0.0, slowest=5.0, fastest=20.0):
         noise = moving_mean(rng.normal(size=(CHANNELS, BINS)), 2) * np.sqrt(5.0)
         for at in [*(order * speed for order in lines), *([tone] if tone else [])]:
             noise += 3.0 * np.exp(-0.5 * ((FREQUENCY - at) / BLUR) ** 2)
-        yield Spectrum(noise, 40.0, float(speed))
+        yield Spectrum(noise, 40.0, float(speed), -2.0)
 
 
 def learned(n, **what):

@@ -24,7 +24,7 @@ def spectra(n, seed=0, gears=True, slowest=4.0, fastest=20.0, line=3.0):
         engine = LOW_GEAR if speed < CHANGE else HIGH_GEAR
         for order in (WHEEL, *([engine] if gears else [])):
             noise += line * np.exp(-0.5 * ((FREQUENCY - order * speed) / (2.0 * WIDTH)) ** 2)
-        yield Spectrum(noise, 40.0, float(speed))
+        yield Spectrum(noise, 40.0, float(speed), -2.0)
 
 
 def learned(n, **what):

@@ -1,0 +1,70 @@
+"""How loud driving is: a window far quieter than this car's driving is one of a car that stands.
+
+A car that stands shakes too, with its engine, its fan or its noise; what its spectrum has of a comb is
+chance, but it is not nothing. That it is quiet tells it from a driving car's as no spectrum does.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+
+from gapless.bridges.knots import KNOTS, shares
+from gapless.recording import Array
+
+FEW: Final = 3.0
+"""Spectra of driving as loud as any other that those heard are mixed with."""
+SPREAD: Final = 0.5
+"""Standard deviation of their loudness: a smooth road against a rough one."""
+ALLOWED: Final = 1.0
+"""Quieter by so many deviations is no news: slow driving is quieter than what was learned from."""
+
+SILENT: Final = np.zeros((len(KNOTS), 3))
+"""Sums over no spectra: how many, of their loudness, of its square, by speed."""
+
+
+def louder(sums: Array, keep: float, level: float, speed: float) -> Array:
+    """The sums with one more spectrum.
+
+    Parameters
+    ----------
+    sums : ndarray, shape (knots, 3)
+        As `SILENT`.
+    keep : float
+        What is left of each spectrum before.
+    level : float
+        Loudness of the new one.
+    speed : float
+        [m/s]
+
+    Returns
+    -------
+    ndarray, shape (knots, 3)
+    """
+    return np.asarray(sums * keep + np.outer(shares(np.array([speed]))[0], (1.0, level, level * level)))
+
+
+def too_quiet(sums: Array, level: float, speeds: Array) -> Array:
+    """Log likelihood that a window so quiet loses against a stop's if the car drives.
+
+    Loudness at a speed is normal with the mean and the variance of what was learned there, but louder
+    than that, or little quieter, is as likely as the mean: one-sided.
+
+    Parameters
+    ----------
+    sums : ndarray, shape (knots, 3)
+    level : float
+    speeds : ndarray, shape (k,)
+        [m/s]
+
+    Returns
+    -------
+    ndarray, shape (k,)
+        Zero or less.
+    """
+    n, first, second = (shares(speeds) @ sums).T
+    mean = first / np.maximum(n, 1e-9)
+    spread = np.maximum(second - n * mean**2, 0.0)
+    sd = np.sqrt((spread + FEW * SPREAD**2) / (n + FEW))
+    return np.asarray(-0.5 * np.maximum((mean - level) / sd - ALLOWED, 0.0) ** 2)
