@@ -14,9 +14,9 @@ from gapless.bridges.knots import KNOTS, shares
 from gapless.recording import Array
 
 FEW: Final = 3.0
-"""Spectra of driving as loud as any other that those heard are mixed with."""
+"""Spectra as loud as the window in question that those heard are mixed with: it begins at no news."""
 SPREAD: Final = 0.5
-"""Standard deviation of their loudness: a smooth road against a rough one."""
+"""Standard deviation of theirs: a smooth road against a rough one."""
 ALLOWED: Final = 1.0
 """Quieter by so many deviations is no news: slow driving is quieter than what was learned from."""
 
@@ -64,7 +64,7 @@ def too_quiet(sums: Array, level: float, speeds: Array) -> Array:
         Zero or less.
     """
     n, first, second = (shares(speeds) @ sums).T
-    mean = first / np.maximum(n, 1e-9)
-    spread = np.maximum(second - n * mean**2, 0.0)
+    quieter = (first - n * level) / (n + FEW)
+    spread = np.maximum(second - first**2 / np.maximum(n, 1e-9), 0.0)
     sd = np.sqrt((spread + FEW * SPREAD**2) / (n + FEW))
-    return np.asarray(-0.5 * np.maximum((mean - level) / sd - ALLOWED, 0.0) ** 2)
+    return np.asarray(-0.5 * np.maximum(quieter / sd - ALLOWED, 0.0) ** 2)

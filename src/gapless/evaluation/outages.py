@@ -269,7 +269,7 @@ def _too_little(time: Array, begin: float, end: float) -> bool:
     if not len(time):
         return True
     seconds = len(np.unique(np.floor(time - begin)))
-    return seconds < 0.5 * math.ceil(end - begin) or float(time[-1]) < end - 0.25 * (end - begin)
+    return bool(seconds < 0.5 * math.ceil(end - begin) or time[-1] < end - 0.25 * (end - begin))
 
 
 def _has_gap(imu: Imu, begin: float, end: float) -> bool:
