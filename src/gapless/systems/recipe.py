@@ -25,10 +25,10 @@ class Imu(Struct, forbid_unknown_fields=True, frozen=True):
     """
 
     grade: str = ""
-    gyro_noise: Positive = 0.025
+    gyro_noise: Positive = 0.035
     vibration: NonNegative = 0.25
     accel_noise: Positive = 0.02
-    gyro_walk: NonNegative = 0.0003
+    gyro_walk: NonNegative = 0.0006
     accel_walk: NonNegative = 0.0012
     turn: NonNegative = 0.0012
     gyro_bias_sd: Positive = 0.3
