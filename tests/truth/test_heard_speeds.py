@@ -61,14 +61,22 @@ def test_speeds_are_read_near_the_bound(rate, chassis, most, share):
     assert len(off) > share * (len(off) + refused)
 
 
+def test_wheels_that_nobody_can_hear_are_not_heard():
+    """Of six drives 52 windows of 1259 give a speed, 4.1 %; two deviations of the 619 windows here are 1.6 %."""
+    alarms = windows = 0
+    for seed in (3, 4, 8):
+        off, _, _, refused = listened(car(seed, deaf()))
+        alarms, windows = alarms + len(off), windows + len(off) + refused
+    print(f"false alarms: {alarms} of {windows} windows")
+    assert windows > 500
+    assert alarms < 0.057 * windows
+
+
 @pytest.mark.parametrize("seed", [3, 4])
-def test_wheels_that_nobody_can_hear_are_not_heard(seed):
+def test_what_is_heard_where_nothing_can_be_heard_does_no_harm(seed):
     log = car(seed, deaf())
-    off, _, _, refused = listened(log)
-    print(f"false alarms: {len(off)} of {len(off) + refused} windows")
     found = ratio(worst(driven(log, "wheels"), log), worst(driven(log, "constraints"), log))
     print(f"{found:.3f}")
-    assert len(off) < 0.05 * (len(off) + refused)
     assert found < 1.05
 
 
