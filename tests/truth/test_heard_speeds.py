@@ -62,7 +62,7 @@ def test_speeds_are_read_near_the_bound(rate, chassis, most, share):
 
 
 def test_wheels_that_nobody_can_hear_are_not_heard():
-    """Of six drives 52 windows of 1259 give a speed, 4.1 %; two deviations of the 619 windows here are 1.6 %."""
+    """Of six drives 52 windows of 1259 give a speed, 4.1 %; two deviations of the 619 here are 1.6 %."""
     alarms = windows = 0
     for seed in (3, 4, 8):
         off, _, _, refused = listened(car(seed, deaf()))
