@@ -26,7 +26,7 @@ def test_a_memory_comes_back_with_the_same_comb_but_less_weight(memory, tmp_path
     back = recalled(str(path))
     assert back.windows == pytest.approx(TRUST)
     share = TRUST / memory.windows
-    for name in ("total", "count", "square", "mean", "speeds"):
+    for name in ("total", "count", "square", "mean", "speeds", "levels"):
         # two roundings
         np.testing.assert_allclose(getattr(back, name), share * getattr(memory, name), rtol=1e-15)
     assert written(memory) == written(memory)
@@ -43,6 +43,7 @@ def test_a_memory_comes_back_with_the_same_comb_but_less_weight(memory, tmp_path
         (lambda held: held.update(windows=float("nan")), "windows is not finite"),
         (lambda held: held.update(windows=-1.0), "windows is negative"),
         (lambda held: held.update(mean="a"), "mean|could not convert"),
+        (lambda held: held.update(levels=[[-1.0, 0.0, 0.0]] * 3), "levels hold a negative"),
     ],
 )
 def test_anything_else_is_refused_in_one_line(memory, tmp_path, spoil, says):

@@ -148,6 +148,12 @@ def test_an_outage_without_any_truth_is_nan_not_zero(drive):
     assert one.distance == pytest.approx(200.0, abs=1e-6)
 
 
+def test_times_of_outages_may_be_numpys(drive):
+    rec, found = drive()
+    plain = score(solve(found, [(100.0, 120.0)]), rec).outages
+    assert score(solve(found, [tuple(np.array([100.0, 120.0]))]), rec).outages == plain
+
+
 def test_a_solution_that_stops_short_is_not_scored_as_perfect(drive):
     rec, found = drive()
     short = found.take(found.time < START + 105)
