@@ -150,8 +150,10 @@ def test_an_outage_without_any_truth_is_nan_not_zero(drive):
 
 def test_times_of_outages_may_be_numpys(drive):
     rec, found = drive()
-    plain = score(solve(found, [(100.0, 120.0)]), rec).outages
-    assert score(solve(found, [tuple(np.array([100.0, 120.0]))]), rec).outages == plain
+    (plain,) = score(solve(found, [(100.0, 120.0)]), rec).outages
+    (one,) = score(solve(found, [tuple(np.array([100.0, 120.0]))]), rec).outages
+    for name in ("labels", "horizontal_max", "distance"):
+        assert getattr(one, name) == getattr(plain, name)
 
 
 def test_a_solution_that_stops_short_is_not_scored_as_perfect(drive):
