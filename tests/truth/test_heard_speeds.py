@@ -62,14 +62,14 @@ def test_speeds_are_read_near_the_bound(rate, chassis, most, share):
 
 
 def test_wheels_that_nobody_can_hear_are_not_heard():
-    """Of six drives 52 windows of 1259 give a speed, 4.1 %; two deviations of the 619 here are 1.6 %."""
+    """Of six drives 52 windows of 1259 give a speed, 4.1 %; one drive's share scatters by more than 1 %."""
     alarms = windows = 0
     for seed in (3, 4, 8):
         off, _, _, refused = listened(car(seed, deaf()))
         alarms, windows = alarms + len(off), windows + len(off) + refused
     print(f"false alarms: {alarms} of {windows} windows")
     assert windows > 500
-    assert alarms < 0.057 * windows
+    assert alarms < 0.05 * windows
 
 
 @pytest.mark.parametrize("seed", [3, 4])

@@ -9,9 +9,10 @@ from cars import car, learned
 from gapless.bridges.combs import Combs
 from gapless.bridges.loudness import SILENT
 from gapless.bridges.orders import WINDOW, spectrum
-from gapless.bridges.peak import Trust, peak
+from gapless.bridges.peak import peak
+from gapless.bridges.wheels import Wheels
 
-TRUST = Trust(temper=0.15, deaf=0.2, evidence=0.7, mass=0.8, widest=6.0)
+TRUST = Wheels({}).trust
 
 
 def standing(log):

@@ -10,7 +10,7 @@ import numpy as np
 
 from gapless._numba import kernel
 from gapless.bridges.knots import KNOTS, shares
-from gapless.bridges.loudness import SILENT, louder, too_quiet
+from gapless.bridges.loudness import SILENT, louder
 from gapless.bridges.orders import BINS, CHANNELS, LOWEST, ORDERS, STEP, WIDTH, Spectrum, evidence, gather
 from gapless.recording import Array
 
@@ -77,21 +77,6 @@ class Comb:
         """
         left = np.ascontiguousarray((heard.log - self.mean).T)
         return evidence(left, heard.top, self.weight, self.cost, speeds)
-
-    def too_quiet(self, heard: Spectrum, speeds: Array) -> Array:
-        """Log likelihood that driving loses against standing by how quiet it is; see `loudness.too_quiet`.
-
-        Parameters
-        ----------
-        heard : Spectrum
-        speeds : ndarray, shape (k,)
-            [m/s]
-
-        Returns
-        -------
-        ndarray, shape (k,)
-        """
-        return too_quiet(self.levels, heard.level, speeds)
 
 
 @dataclass

@@ -8,6 +8,7 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from gapless.bridges.comb import Comb
+from gapless.bridges.loudness import too_quiet
 from gapless.bridges.orders import Spectrum
 
 SLOWEST: Final = 2.5
@@ -78,7 +79,8 @@ def peak(comb: Comb, heard: Spectrum, sd: float, trust: Trust) -> Peak | None:
     if audible.sum() < 5:
         return None
     ratio = np.exp(trust.temper * comb.evidence(heard, speeds[audible]))
-    log[audible] = np.log((1.0 - trust.deaf) * ratio + trust.deaf) + comb.too_quiet(heard, speeds[audible])
+    log[audible] = np.log((1.0 - trust.deaf) * ratio + trust.deaf)
+    log[audible] += too_quiet(comb.levels, heard.level, speeds[audible])
     prior = np.exp(-0.5 * ((speeds - heard.speed) / sd) ** 2)
     posterior = log + np.log(prior)
     k = int(posterior.argmax())
