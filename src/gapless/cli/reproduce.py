@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from shutil import get_terminal_size
+from shutil import get_terminal_size, rmtree
 from typing import TYPE_CHECKING
 
 import click
@@ -34,7 +34,9 @@ def reproduce(
 
     PAPER is wang2018, liu2019, georges2015, aslinezhad2020 or tan2015. DIR receives
     README.md and report.html, which say what differs and why, the tables, every
-    number (CSV, JSON) and the figures; files of these names are replaced.
+    number (CSV, JSON) and the figures; files of these names are replaced. An
+    interrupted command goes on where it stopped: until its end, DIR/unfinished
+    keeps what is done.
     """
     from gapless.cli.output import check_folder, write_together
 
@@ -43,26 +45,41 @@ def reproduce(
     from gapless.cli.progress import progress
     from gapless.laboratory.render import as_text
     from gapless.laboratory.study import stored
-    from gapless.papers.experiment import chosen
     from gapless.papers.experiment import reproduce as run
     from gapless.papers.folder import FILES, writers
+    from gapless.papers.kept import FOLDER
     from gapless.papers.library import paper as known
     from gapless.papers.page import summary
     from gapless.papers.tables import tables
 
     found, sources = known(paper), stored((*first, *more))
     _look(first + more)
-    count = sum(n for _, n in chosen(found, seeds, sources))
-    with progress("running", count) as tell:
-        done = run(found, seeds, sources, processes=jobs, progress=tell)
+    kept = out / FOLDER
+    try:
+        with progress("running", 100.0) as tell:
+            done = run(found, seeds, sources, processes=jobs, progress=tell, kept=kept)
+    except KeyboardInterrupt:
+        if not kept.is_dir():
+            raise
+        _interrupted(kept)
     drawn = _drawn(done)
     arguments = {"paper": paper, "recordings": [str(p) for p in (*first, *more)], "seeds": seeds}
     files = writers(done, arguments, drawn)
     stale = [f"figures/{p.name}" for p in (out / "figures").glob("*.png")]
     write_together(out, files, own=(*FILES, *stale))
+    rmtree(kept, ignore_errors=True)
     click.echo(as_text(tables(done), get_terminal_size((140, 24)).columns))
     click.echo(summary(done))
     click.echo("\n".join(f"wrote {out / name}" for name in files))
+
+
+def _interrupted(kept: Path) -> None:
+    """Say what is left, and that it is no debris."""
+    from gapless.cli import INTERRUPTED
+
+    told = f"what is done is kept in {kept}; the same command goes on from there"
+    click.echo(f"\ngapless: interrupted; {told}", err=True)
+    click.get_current_context().exit(INTERRUPTED)
 
 
 def _look(paths: tuple[Path, ...]) -> None:

@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
+from functools import partial
+from pathlib import Path
 
 from gapless.errors import ConfigError, MissingExtraError
 from gapless.laboratory.pool import Progress, in_order
 from gapless.laboratory.study import Source
 from gapless.papers import drives, road
-from gapless.papers.jobs import Curve, Job, Outcome, Sample, Track, prepare
+from gapless.papers.jobs import Curve, Job, Outcome, Ready, Sample, Track, prepare
+from gapless.papers.kept import load, place, save
 from gapless.papers.model import Experiment, Paper
 from gapless.papers.studies import STUDIES, Study
 
@@ -119,6 +122,7 @@ def reproduce(
     sources: Sequence[Source] = (),
     processes: int = 1,
     progress: Progress | None = None,
+    kept: Path | None = None,
 ) -> Reproduction:
     """Run a paper's experiments again.
 
@@ -132,6 +136,9 @@ def reproduce(
     processes : int
         With one, everything runs in this process.
     progress : callable, optional
+        Told the share that is done [%].
+    kept : Path, optional
+        Folder in which outcomes are kept as they come; those that are there are not computed again.
 
     Returns
     -------
@@ -150,14 +157,55 @@ def reproduce(
             raise ConfigError(f"{paper.name}, {experiment.name}: {next(iter(missing.values()))}")
         found = Results(experiment, count, missing=missing)
         results.append(found)
-        for k in range(count):
-            source = None if experiment.drive is not None else sources[k]
-            jobs.append((found, Job(experiment, ready, k + 1, source, shown=k == 0)))
-    outcomes = in_order(execute, [job for _, job in jobs], processes, progress)
+        jobs += [(found, job) for job in _jobs(experiment, ready, count, sources)]
+
+    def tell(done: float) -> None:
+        if progress is not None:
+            progress(100.0 * done / len(jobs))
+
+    work = execute if kept is None else partial(execute_once, kept)
+    outcomes = in_order(work, [job for _, job in jobs], processes, tell)
     for (found, _), outcome in zip(jobs, outcomes, strict=True):
         _gather(found, outcome)
     studies, undone = _studied(paper, results)
     return Reproduction(paper, tuple(results), time.perf_counter() - begun, studies, undone)
+
+
+def _jobs(
+    experiment: Experiment, ready: tuple[Ready, ...], count: int, sources: Sequence[Source]
+) -> Iterator[Job]:
+    """A job for each simulated drive; on a recording, which takes longer, one for each method."""
+    for k in range(count):
+        if experiment.drive is not None:
+            yield Job(experiment, ready, k + 1, shown=k == 0)
+        else:
+            yield from (Job(experiment, (one,), source=sources[k], shown=k == 0) for one in ready)
+
+
+def execute_once(kept: Path, job: Job) -> Outcome:
+    """What one process does, unless it was done before.
+
+    Parameters
+    ----------
+    kept : Path
+        Folder of outcomes.
+    job : Job
+
+    Returns
+    -------
+    Outcome
+
+    Raises
+    ------
+    GaplessError
+        If a recording cannot be read.
+    """
+    path = place(kept, job)
+    outcome = load(path)
+    if outcome is None:
+        outcome = execute(job)
+        save(path, outcome)
+    return outcome
 
 
 def execute(job: Job) -> Outcome:

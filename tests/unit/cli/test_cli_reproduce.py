@@ -7,7 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from gapless.papers import library, model
+from gapless.papers import experiment, library, model
+from gapless.papers.experiment import execute
+from gapless.papers.kept import FOLDER
 
 FILES = {"README.md", "report.html", "tables.txt", "results.json", "samples.csv", "results.csv", "figures"}
 
@@ -82,6 +84,33 @@ def test_an_interrupt_leaves_nothing(shell, quick, tmp_path, monkeypatch):
     monkeypatch.setattr("gapless.papers.experiment.execute", interrupted)
     shell("reproduce", "tan2015", "--seeds", 1, "--jobs", 1, "--out", tmp_path / "out", code=130)
     assert not (tmp_path / "out").exists()
+
+
+def test_an_interrupted_command_goes_on_where_it_stopped(shell, quick, tmp_path, monkeypatch):
+    whole, out, begun = tmp_path / "whole", tmp_path / "out", []
+
+    def counted(job, stop):
+        if len(begun) == stop:
+            raise KeyboardInterrupt
+        begun.append(job.seed)
+        return execute(job)
+
+    def run(out, stop, code=0):
+        monkeypatch.setattr(experiment, "execute", lambda job: counted(job, stop))
+        return shell("reproduce", "tan2015", "--seeds", 3, "--jobs", 1, "--out", out, code=code).output
+
+    run(whole, 3)
+    begun.clear()
+    said = run(out, 2, 130)
+    assert f"interrupted; what is done is kept in {out / FOLDER}; the same command goes on from there" in said
+    assert [p.name for p in out.iterdir()] == [FOLDER]
+    damaged = sorted((out / FOLDER).iterdir())[0]
+    damaged.write_bytes(damaged.read_bytes()[:-9])  # computed again, like what is not there
+    run(out, 4)
+    assert len(begun) == 4
+    assert {p.name for p in out.iterdir()} == FILES
+    for name in ("samples.csv", "results.csv", *(f"figures/{p.name}" for p in (whole / "figures").iterdir())):
+        assert (out / name).read_bytes() == (whole / name).read_bytes()
 
 
 def test_without_matplotlib_one_line_says_so(shell, quick, tmp_path, monkeypatch):
