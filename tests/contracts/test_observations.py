@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 
 from gapless import attitude
 from gapless.events import Motion, Reading
@@ -12,12 +13,12 @@ from gapless.measurements.gnss import Position, Velocity
 from gapless.measurements.nonholonomic import NonHolonomic
 from gapless.measurements.odometer import Odometer
 from gapless.measurements.stillness import Stillness
-from gapless.measurements.vehicle import axes
+from gapless.measurements.vehicle import CRAWL, axes
 from gapless.measurements.zero_velocity import zero_velocity
 from gapless.simulate import Vehicle, drive, increments, point, trajectory
 
 FULL, CORE = Layout(tuple(EXTRAS)), Layout()
-ANGLES, AXLE, LEVER, SCALE = (0.04, -0.07), -1.3, np.array([-0.8, 0.4, -1.1]), -0.02
+ANGLES, AXLE, LEVER, SCALE, SHORT = (0.04, -0.07), -1.3, np.array([-0.8, 0.4, -1.1]), -0.02, 0.12
 CAR = Vehicle(
     imu=(1.3, 0.0, 0.0),
     antenna=tuple(np.array([1.3, 0.0, 0.0]) + axes(*ANGLES) @ LEVER),
@@ -35,7 +36,13 @@ def truth(layout, t, car=CAR, path=PATH):
     k = int(np.searchsorted(imu.time, t - 1e-6))
     b = Belief(layout)
     b.x[:3], b.x[3:6], b.x[6:10] = there.lla[0], there.v_n[0], attitude.from_euler(there.euler[0])
-    known = {"mounting": ANGLES, "axle": AXLE, "lever_arm": LEVER, "odometer_scale": SCALE}
+    known = {
+        "mounting": ANGLES,
+        "axle": AXLE,
+        "lever_arm": LEVER,
+        "odometer_scale": SCALE,
+        "odometer_offset": SHORT,
+    }
     for name, value in known.items():
         if name in layout:
             b.block(name)[:] = value
@@ -50,16 +57,24 @@ def reading(channel, t, value):
     return Reading(channel, t, value, np.linspace(0.5, 1.5, len(value)), 1.0)
 
 
+def wheels_say(speed, layout):
+    """The reading r with r (1 + s) + o r^2 / (r^2 + CRAWL^2) = speed."""
+    if "odometer_scale" not in layout:
+        return speed
+    whole = lambda r: r * (1.0 + SCALE) + SHORT * r * r / (r * r + CRAWL * CRAWL) - speed  # noqa: E731
+    return brentq(whole, 0.0, 2.0 * speed, xtol=1e-12)
+
+
 def observers(t):
     """By name: a function of belief and motion."""
     lla, v_n, _ = point(PATH, np.array([t]), CAR.antenna)
-    speed = float(PATH.along(np.array([t]))[0][0]) / (1.0 + SCALE)
+    speed = float(PATH.along(np.array([t]))[0][0])
     fixed = {"mounting": ANGLES}
     return {
         "position": lambda b, m: Position(LEVER).observe(b, reading("position", t, lla[0])),
         "velocity": lambda b, m: Velocity(LEVER).observe(b, reading("velocity", t, v_n[0])),
         "odometer": lambda b, m: Odometer(**fixed).observe(
-            b, reading("odometer", t, speed if "odometer_scale" in b.layout else speed * (1.0 + SCALE))
+            b, reading("odometer", t, wheels_say(speed, b.layout))
         ),
         "nonholonomic": lambda b, m: NonHolonomic(axle=AXLE, **fixed).tick(b, m),
     }

@@ -23,7 +23,8 @@ EXTRAS: Final = {
     "lever_arm": 3,  # m, FRD, antenna from the IMU
     "mounting": 2,  # rad, pitch and yaw of the car's forward axis in the box
     "axle": 1,  # m, forward coordinate of the point that does not slip sideways
-    "odometer_scale": 1,  # 1; true speed = reading * (1 + s)
+    "odometer_scale": 1,  # 1; true speed = reading * (1 + s) + o, of wheels that roll
+    "odometer_offset": 1,  # m/s
 }
 """Optional blocks, their size, and their unit."""
 NAV: Final = 9

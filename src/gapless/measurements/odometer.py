@@ -1,4 +1,4 @@
-"""Wheel speed, its scale a state."""
+"""Wheel speed, its scale and its offset states."""
 
 from __future__ import annotations
 
@@ -24,6 +24,8 @@ class Odometer:
         Correlation time of its error [s].
     jitter : float
         Standard deviation of its time stamps [s]; an odometer's clock may drift by some tenths.
+    side : float
+        Standard deviation of how far the wheel is aside of the box [m].
     mounting : tuple of 2 float
         Pitch and yaw of the car's forward axis in the box, where they are not states [rad].
     """
@@ -31,6 +33,7 @@ class Odometer:
     sd: float = 0.2
     correlation: float = 0.5
     jitter: float = 0.2
+    side: float = 0.5
     mounting: tuple[float, float] = (0.0, 0.0)
 
     def observe(self, belief: Belief, reading: Reading) -> Observation:
@@ -45,6 +48,7 @@ class Odometer:
                 np.asarray(self.mounting),
                 belief.memory,
                 self.jitter,
+                self.side,
                 float(reading.value[0]),
                 sd,
             )

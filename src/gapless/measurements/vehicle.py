@@ -14,13 +14,15 @@ from numpy.typing import NDArray
 from gapless import earth
 from gapless._numba import inline, kernel
 from gapless.attitude import matrix_rows
-from gapless.inertial.propagate import PREV_DT, PREV_VEL
+from gapless.inertial.propagate import PREV_DT, PREV_THETA, PREV_VEL
 from gapless.recording import Array
 
 LEAST = 0.05
 """What is left of the lateral standard deviation at a crawl [m/s]."""
-MOUNTING, AXLE, SCALE = 4, 5, 6
-"""Where `Layout.offsets` keeps the three blocks."""
+CRAWL = 0.5
+"""An odometer's offset is there once wheels roll: half of it in v^2 at this reading [m/s], none at rest."""
+MOUNTING, AXLE, SCALE, OFFSET = 4, 5, 6, 7
+"""Where `Layout.offsets` keeps the four blocks."""
 
 
 @inline
@@ -144,10 +146,14 @@ def odometer(
     mounting: Array,
     memory: Array,
     jitter: float,
+    side: float,
     speed: float,
     sd: float,
 ) -> tuple[Array, Array, Array]:
-    """Wheel speed with a scale error: z = reading (1 + s) - forward speed.
+    """Wheel speed with a scale error and an offset: z = reading (1 + s) + o - forward speed.
+
+    Counters that drop the rest of a pulse, and filters that average, read too little by the same at any
+    speed; a scale alone takes that for a share, and is wrong wherever the speed is another.
 
     Parameters
     ----------
@@ -157,6 +163,8 @@ def odometer(
         What the last sample left behind: specific force.
     jitter : float
         Standard deviation of the time stamp [s]: while the car accelerates, late is wrong.
+    side : float
+        Standard deviation of how far the wheel is aside of the box [m]: in a turn it is faster or slower.
     speed, sd : float
         Reading and its standard deviation [m/s].
 
@@ -167,19 +175,24 @@ def odometer(
     R : ndarray, shape (1, 1)
     """
     c, e, v_b, theta, _ = _geometry(x, offsets, mounting, 0.0)
-    k, m = offsets[SCALE], offsets[MOUNTING]
+    k, o, m = offsets[SCALE], offsets[OFFSET], offsets[MOUNTING]
     z, h, r = np.empty(1), np.zeros((1, n)), np.zeros((1, 1))
-    z[0] = speed * (1.0 + (x[k + 1] if k >= 0 else 0.0)) - _dot(e[0], v_b)
+    rolls = speed * speed / (speed * speed + CRAWL * CRAWL)
+    scale, offset = x[k + 1] if k >= 0 else 0.0, x[o + 1] if o >= 0 else 0.0
+    z[0] = speed * (1.0 + scale) + rolls * offset - _dot(e[0], v_b)
     _component(x, c, e[0], h[0])
     if m >= 0:
         h[0, m] = -_dot(e[2], v_b)
         h[0, m + 1] = np.cos(theta) * _dot(e[1], v_b)
     if k >= 0:
         h[0, k] = -speed
-    accel = 0.0
+    if o >= 0:
+        h[0, o] = -rolls
+    accel = yaw_rate = 0.0
     if memory[PREV_DT] > 0.0:
         g = earth.gravity(np.sin(x[0]), x[2])
         for i in range(3):
             accel += e[0, i] * (memory[PREV_VEL + i] / memory[PREV_DT] + g * c[2, i])
-    r[0, 0] = sd * sd + (accel * jitter) ** 2
+            yaw_rate += e[2, i] * memory[PREV_THETA + i] / memory[PREV_DT]
+    r[0, 0] = sd * sd + (accel * jitter) ** 2 + (yaw_rate * side) ** 2
     return z, h, r

@@ -42,6 +42,7 @@ STATES = {
     "mounting": Quantity("Mounting angles", "deg", DEG, ("pitch", "yaw")),
     "axle": Quantity("Axle ahead of the box", "m", 1.0, ("forward",)),
     "odometer_scale": Quantity("Odometer scale", "%", 0.01, ("scale",)),
+    "odometer_offset": Quantity("Odometer offset", "m/s", 1.0, ("forward",)),
 }
 """Blocks of the error-state layout."""
 

@@ -73,6 +73,8 @@ class WheelSensor:
         Readings per second [Hz].
     scale : float
         It reads 1 + scale times the speed.
+    offset : float
+        Added to it while the wheels roll [m/s]; a reading is never below zero for it.
     delay : float
         By how much a stamp is late; negative if it is early [s].
     noise : float
@@ -83,6 +85,7 @@ class WheelSensor:
 
     rate: float = 10.0
     scale: float = 0.0
+    offset: float = 0.0
     delay: float = 0.0
     noise: float = 0.02
     quantum: float = 0.0
@@ -156,7 +159,8 @@ def odometer(path: Path, sensor: WheelSensor, rng: Generator) -> Odometer:
     """
     time = _epochs(path, sensor.rate, (sensor.delay, sensor.delay))
     true, _ = path.along(time - sensor.delay)
-    speed = (1.0 + sensor.scale) * true + sensor.noise * rng.standard_normal(len(time))
+    rolling = np.where(true > 0.0, np.maximum((1.0 + sensor.scale) * true + sensor.offset, 0.0), true)
+    speed = rolling + sensor.noise * rng.standard_normal(len(time))
     if sensor.quantum:
         speed = sensor.quantum * np.rint(speed / sensor.quantum)
     return Odometer(time, speed)

@@ -80,6 +80,7 @@ def settings(
             "mounting": angle_sd,
             "axle": system.nonholonomic.axle_sd,
             "odometer_scale": system.odometer.scale_sd,
+            "odometer_offset": system.odometer.offset_sd,
         },
         initial=_initial(names, angles, system, recording),
         sensors=sensors,
@@ -163,7 +164,7 @@ def states(system: System, recording: Recording) -> tuple[str, ...]:
     names = list(system.filter.states)
     car = "nonholonomic" in system.constraints
     wheel = "odometer" in system.sensors and recording.odometer is not None
-    wanted = ["mounting"] * (car or wheel) + ["axle"] * car + ["odometer_scale"] * wheel
+    wanted = ["mounting"] * (car or wheel) + ["axle"] * car + ["odometer_scale", "odometer_offset"] * wheel
     return (*names, *(name for name in wanted if name not in names))
 
 
@@ -242,7 +243,9 @@ def _sensors(system: System, recording: Recording, angles: Array) -> dict[str, S
         "velocity": Velocity(
             lever, use.velocity_correlation, use.velocity_floor, use.jitter, use.velocity_averaging
         ),
-        "odometer": Odometer(wheel.sd, wheel.correlation, wheel.jitter, (float(angles[0]), float(angles[1]))),
+        "odometer": Odometer(
+            wheel.sd, wheel.correlation, wheel.jitter, wheel.side, (float(angles[0]), float(angles[1]))
+        ),
     }
     if system.filter.moments == "cubature":
         known = {name: Spread(sensor) for name, sensor in known.items()}

@@ -105,12 +105,14 @@ class ZeroVelocity(Struct, forbid_unknown_fields=True, frozen=True):
 
 
 class OdometerUse(Struct, forbid_unknown_fields=True, frozen=True):
-    """Wheel speed and its scale error."""
+    """Wheel speed, its scale error and offset, its stamps, and how far the wheel is aside of the box."""
 
     sd: Positive = 0.2
     correlation: NonNegative = 0.5
     jitter: NonNegative = 0.2
+    side: NonNegative = 0.5
     scale_sd: NonNegative = 0.03
+    offset_sd: NonNegative = 0.1
 
 
 class Clock(Struct, forbid_unknown_fields=True, frozen=True):

@@ -4,14 +4,16 @@ import numpy as np
 import pytest
 
 from gapless import attitude
+from gapless.earth import gravity
 from gapless.events import Motion, Reading
+from gapless.inertial import propagate as at
 from gapless.inertial.belief import Belief
 from gapless.inertial.layout import Layout
 from gapless.inertial.trail import Trail
 from gapless.measurements.nonholonomic import NonHolonomic
 from gapless.measurements.odometer import Odometer
 
-LAYOUT = Layout(("mounting", "axle", "odometer_scale"))
+LAYOUT = Layout(("mounting", "axle", "odometer_scale", "odometer_offset"))
 
 
 def driving(speed, heading=0.4):
@@ -70,6 +72,27 @@ def test_odometer_knows_its_scale_and_shares_what_comes_fast():
     assert abs(sensor.observe(b, reading).z[0]) < 1e-12
     assert sensor.observe(b, reading).R[0, 0] == pytest.approx(0.04)
     assert sensor.observe(b, reading._replace(interval=0.1)).R[0, 0] == pytest.approx(0.4)
+
+
+def test_an_offset_is_one_of_wheels_that_roll():
+    b, still = driving(10.0), driving(0.0)
+    for belief in (b, still):
+        belief.block("odometer_offset")[0] = 0.12
+    stop = Odometer().observe(still, Reading("odometer", 0.0, np.zeros(1), np.ones(1), 1.0))
+    assert stop.z[0] == 0.0  # wheels at rest say that the car stands, and nothing of the offset
+    assert stop.H[0, LAYOUT.blocks["odometer_offset"]] == 0.0
+    short = Odometer().observe(b, Reading("odometer", 0.0, np.array([9.88]), np.ones(1), 1.0))
+    assert abs(short.z[0]) < 0.12 * 0.5**2 / 9.88**2  # what is not there yet of an offset that grows with v^2
+
+
+def test_a_wheel_aside_of_the_box_is_believed_less_in_turns():
+    b, sensor = driving(10.0), Odometer(sd=0.2, correlation=0.0, side=0.5)
+    reading = Reading("odometer", 0.0, np.array([10.0]), np.ones(1), 1.0)
+    straight = sensor.observe(b, reading).R[0, 0]
+    b.memory[at.PREV_DT] = 0.01
+    b.memory[at.PREV_VEL : at.PREV_VEL + 3] = 0.01 * np.array([0.0, 0.0, -gravity(np.sin(0.6), 50.0)])
+    b.memory[at.PREV_THETA : at.PREV_THETA + 3] = 0.01 * np.array([0.0, 0.0, -0.3])
+    assert sensor.observe(b, reading).R[0, 0] == pytest.approx(straight + (0.5 * 0.3) ** 2, rel=1e-9)
 
 
 def test_the_trail_is_the_mean_velocity_of_a_window():

@@ -107,6 +107,8 @@ def test_odometer_has_its_scale_delay_and_steps():
     read = odometer(PATH, sensor, rng())
     assert_allclose(read.speed, 1.02 * PATH.speed(read.time + 0.3), atol=0.025 + 1e-12)  # half a step
     assert_allclose(read.speed / 0.05, np.rint(read.speed / 0.05), atol=1e-9)
+    short = odometer(PATH, WheelSensor(offset=-0.12, noise=0.0), rng())
+    assert_allclose(short.speed, np.maximum(PATH.speed(short.time) - 0.12, 0.0), atol=1e-12)
     noisy = odometer(PATH, WheelSensor(noise=0.1), rng())
     error = noisy.speed - PATH.speed(noisy.time)
     assert abs(error.std() / 0.1 - 1.0) < 4 / np.sqrt(2 * len(error))  # four sigma of an sd

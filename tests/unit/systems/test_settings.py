@@ -23,7 +23,7 @@ NONE = (np.zeros(2), np.full(2, 0.1))
 def test_blocks_are_those_that_are_needed_and_each_once():
     bare = replace(LOG, odometer=None)
     assert states(System(), bare) == ("gyro_scale", "mounting", "axle")
-    assert states(System(), LOG) == ("gyro_scale", "mounting", "axle", "odometer_scale")
+    assert states(System(), LOG) == ("gyro_scale", "mounting", "axle", "odometer_scale", "odometer_offset")
     assert states(System(constraints=()), bare) == ("gyro_scale",)
     asked = System(filter=Filter(states=("mounting", "gravity")))
     assert sorted(states(asked, bare)) == ["axle", "gravity", "mounting"]
