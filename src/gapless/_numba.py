@@ -27,7 +27,7 @@ FAST = {"reassoc", "contract", "arcp", "nsz"}
 
 
 _FILES = ("_numba", "units", "earth", "attitude", "recording", "events")
-_WITH = ("filters", "inertial", "sensors", "measurements", "denoise", "bridges")
+_WITH = ("filters", "inertial", "sensors", "measurements", "denoise", "bridges", "learners")
 _ROOMS = (*(f"{name}.py" for name in _FILES), *_WITH)
 """Modules that hold kernels, and all that those may import (the floors keep it so)."""
 _KEPT = 30.0 * 86400.0

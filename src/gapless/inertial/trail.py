@@ -7,12 +7,28 @@ from typing import Final
 
 import numpy as np
 
+from gapless._numba import kernel
 from gapless.recording import Array
 
 GRAVITY = 9.8
 """Enough for telling what gravity did, and what a tilt feigns [m/s^2]."""
 SPARE: Final = 64
 """Rows that are free after a trail grew."""
+
+
+@kernel
+def _mark(store: Array, first: int, k: int, time: float, v_n: Array, corrected: Array, length: float) -> int:
+    """Write row k after those from `first` on; the first that is still needed."""
+    store[k, 0] = time
+    dt = time - store[k - 1, 0] if k > first else 0.0
+    for i in range(1, 4):
+        store[k, i] = v_n[i - 1] - corrected[i - 1]
+        store[k, 3 + i] = (
+            store[k - 1, 3 + i] + 0.5 * (store[k, i] + store[k - 1, i]) * dt if k > first else 0.0
+        )
+    while k - first > 1 and store[first + 1, 0] < time - length:
+        first += 1
+    return first
 
 
 class Trail:
@@ -56,18 +72,8 @@ class Trail:
             return
         if self._end == len(self._store):
             self._make_room()
-        store, k = self._store, self._end
-        x, y, z = (v_n - self.corrected).tolist()
-        if k == self._first:
-            store[k] = time, x, y, z, 0.0, 0.0, 0.0
-        else:
-            before, u, v, w, a, b, c = store[k - 1].tolist()
-            dt = time - before
-            a, b, c = a + 0.5 * (x + u) * dt, b + 0.5 * (y + v) * dt, c + 0.5 * (z + w) * dt
-            store[k] = time, x, y, z, a, b, c
-        self._end = k + 1
-        while self._end - self._first > 2 and store[self._first + 1, 0] < time - self.length:
-            self._first += 1
+        self._first = _mark(self._store, self._first, self._end, time, v_n, self.corrected, self.length)
+        self._end += 1
 
     def _make_room(self) -> None:
         kept = self.marks

@@ -3,18 +3,15 @@
 from __future__ import annotations
 
 from numbers import Real
-from typing import Any, ClassVar, Final, NamedTuple, Self
+from typing import Any, ClassVar, NamedTuple, Self
 
 import numpy as np
-from sklearn.svm import _libsvm
 from sklearn.utils._param_validation import Interval
 
 from gapless.learners.base import OutputByOutput
 from gapless.learners.rbf import squared_distances
+from gapless.learners.smo import solve
 from gapless.recording import Array
-
-_EPSILON_SVR: Final = 3
-"""The library's number of this kind of machine."""
 
 
 class Expansion(NamedTuple):
@@ -35,7 +32,7 @@ class Expansion(NamedTuple):
 class MeanLossSVR(OutputByOutput):
     """SVR that minimises |w|^2/2 + C/l sum (xi + xi*), l the number of samples (tan2015 eq. 13).
 
-    A library's C is C/l. K(x, z) = exp(-gamma |x - z|^2). Inputs and targets should lie in [-1, 1]
+    The C of other libraries is C/l. K(x, z) = exp(-gamma |x - z|^2). Inputs and targets should lie in [-1, 1]
     (see `scaling`).
 
     Parameters
@@ -70,14 +67,10 @@ class MeanLossSVR(OutputByOutput):
         return self
 
     def _machine(self, X: Array, column: Array) -> Expansion:
-        """LIBSVM alone: scikit-learn's SVR around it checks what is checked, twice as long as it fits."""
-        _libsvm.set_verbosity_wrap(0)
-        own = {"C": self.C / len(X), "gamma": self.gamma, "epsilon": self.epsilon}
-        X, column = np.ascontiguousarray(X), np.ascontiguousarray(column)
-        _, vectors, _, dual, intercept, *_ = _libsvm.fit(
-            X, column, svm_type=_EPSILON_SVR, kernel="rbf", cache_size=200.0, **own
-        )
-        return Expansion(vectors, dual, intercept)
+        gram = np.exp(-self.gamma * squared_distances(X, X))
+        beta, intercept = solve(gram, column, self.C / len(X), self.epsilon)
+        used = beta != 0.0
+        return Expansion(X[used], beta[None, used], np.array([intercept]))
 
     def _predict(self, X: Array) -> Array:
         return np.column_stack([self._one(machine, X) for machine in self.estimators_])

@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import cached_property
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 from gapless.events import Event, ImuBlock
 from gapless.manner import Manner
 from gapless.navigator import Navigator
 from gapless.rehearsal.judge import Rehearsed, Trial
 from gapless.rehearsal.stretch import Stretch
+
+ROWS: Final = 1.0
+"""Rows of a replay are so far apart [s]: what is looked for is how far it went astray in a minute."""
 
 
 class Attempt(NamedTuple):
@@ -94,6 +98,7 @@ class Replay:
         """Step so many samples at most, and the readings that follow them; how many they were."""
         if self._navigator is None:
             self._navigator, self._left = self.stretch.navigator.fork(), list(self._script)
+            self._navigator.settings = replace(self._navigator.settings, row=ROWS)
             self._navigator.adopt(self.attempts[len(self.trials)].manner)
             self._navigator.keeps_learning = False
         taken = 0

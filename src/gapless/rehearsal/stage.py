@@ -31,7 +31,7 @@ SETTLE: Final = 45.0
 """After its alignment a navigator is left alone for so long [s]: bridges have something to say by then."""
 
 
-RESERVE: Final = 12
+RESERVE: Final = 8
 """Candidates that may be tried on credit, so that there is a choice early in a drive."""
 PONDER: Final = 5.0
 """A rehearsal is replayed and adopted within so many seconds after its end, a slice with each sample [s]."""
@@ -59,7 +59,7 @@ class Plan:
     presets: Mapping[str, Manner] = field(default_factory=dict)
     every: float = 20.0
     length: float = 60.0
-    budget: float = 0.5
+    budget: float = 0.4
 
 
 class Rehearsing:

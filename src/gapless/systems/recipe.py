@@ -158,12 +158,12 @@ class RehearsalUse(Struct, forbid_unknown_fields=True, frozen=True):
 
     `others` names systems whose bridges may speak too, alone or with this one's, once they have earned
     it. `presets` names other tunings: keys of this recipe and their values. `budget` is how many samples
-    may be replayed for each that comes in, besides ten trials at the start.
+    may be replayed for each that comes in, besides eight trials at the start.
     """
 
     every: NonNegative = 0.0
     length: Annotated[float, Meta(ge=10.0)] = 60.0
-    budget: Positive = 0.5
+    budget: Positive = 0.4
     others: tuple[str, ...] = ()
     presets: dict[str, dict[str, Any]] = {}
 

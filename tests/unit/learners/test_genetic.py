@@ -93,7 +93,8 @@ def test_folds_of_the_papers_svr_divide_c_by_their_own_number():
     best = model.best_params_[0]
     theirs = SVR(C=best["C"] / 32, gamma=best["gamma"], epsilon=0.001)  # 40 samples in five folds
     predicted = cross_val_predict(theirs, X, Y[:, 0], cv=KFold(5))
-    assert model.best_rms_[0] == pytest.approx(np.sqrt(np.mean((predicted - Y[:, 0]) ** 2)))
+    # two solvers, each within 1e-3 of the optimum
+    assert model.best_rms_[0] == pytest.approx(np.sqrt(np.mean((predicted - Y[:, 0]) ** 2)), abs=1e-3)
 
 
 class Counted(Ridge):
