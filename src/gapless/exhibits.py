@@ -191,10 +191,11 @@ def fundamental(orders: Array, height: Array, error: Array) -> tuple[float | Non
     if not spread > 0.0:
         return None, 0.0
     tried = np.arange(1.0 / WHEELS[1], 1.0 / WHEELS[0], FINEST)
-    contrast = np.empty(len(tried))
-    for i, first in enumerate(tried):
-        at = np.interp(np.arange(first, orders[-1], first), orders, evidence)
-        contrast[i] = (at.mean() - evidence.mean()) / spread * np.sqrt(len(at))
+    at = np.outer(tried, np.arange(1.0, orders[-1] / tried[0]))
+    known = at < orders[-1]
+    count = known.sum(axis=1)
+    mean = np.where(known, np.interp(at, orders, evidence), 0.0).sum(axis=1) / count
+    contrast = (mean - evidence.mean()) / spread * np.sqrt(count)
     k = int(contrast.argmax())
     found = float(1.0 / tried[k])
     return (found if contrast[k] > STANDS_OUT else None), float(contrast[k])

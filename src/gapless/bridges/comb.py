@@ -150,7 +150,7 @@ class Memory:
         speeds = self.speeds * keep
         speeds[min(SPEED_BINS - 1, int(heard.speed / SPEED_BIN))] += 1.0
         mean, windows = self.mean * keep + heard.log, self.windows * keep + 1.0
-        levels = louder(self.levels, keep, heard.level, heard.speed)
+        levels = louder(self.levels, keep, heard.level, share)
         return Memory(heard.top, total, count, square, mean, speeds, levels, windows)
 
     def comb(self) -> Comb:

@@ -24,7 +24,7 @@ SILENT: Final = np.zeros((len(KNOTS), 3))
 """Sums over no spectra: how many, of their loudness, of its square, by speed."""
 
 
-def louder(sums: Array, keep: float, level: float, speed: float) -> Array:
+def louder(sums: Array, keep: float, level: float, share: Array) -> Array:
     """The sums with one more spectrum.
 
     Parameters
@@ -35,14 +35,14 @@ def louder(sums: Array, keep: float, level: float, speed: float) -> Array:
         What is left of each spectrum before.
     level : float
         Loudness of the new one.
-    speed : float
-        [m/s]
+    share : ndarray, shape (knots,)
+        How its speed is shared by the knots.
 
     Returns
     -------
     ndarray, shape (knots, 3)
     """
-    return np.asarray(sums * keep + np.outer(shares(np.array([speed]))[0], (1.0, level, level * level)))
+    return np.asarray(sums * keep + np.outer(share, (1.0, level, level * level)))
 
 
 def too_quiet(sums: Array, level: float, speeds: Array) -> Array:
