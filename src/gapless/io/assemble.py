@@ -7,6 +7,7 @@ import numpy as np
 from gapless.io.inertial_log import imu_from_increments, imu_from_rates
 from gapless.io.log import Log
 from gapless.io.other_logs import odometer_from_log, reference_from_log
+from gapless.io.plausible import check_odometer
 from gapless.io.satellite_log import gnss_from_log
 from gapless.recording import Array, Recording
 
@@ -57,6 +58,7 @@ def assemble(
     wheel = truth = None
     if odometer is not None:
         wheel, more = odometer_from_log(odometer)
+        check_odometer(odometer, wheel, fixes)
         notes += more
     if reference is not None:
         truth, more = reference_from_log(reference)

@@ -1,14 +1,15 @@
-"""Do a receiver's velocities and positions tell of the same drive? Units, order, signs."""
+"""Do velocities, wheel speeds and positions tell of the same drive? Units, order, signs."""
 
 from __future__ import annotations
 
 from typing import Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from gapless.earth import radii
 from gapless.io.log import Log
-from gapless.recording import Array, Gnss
+from gapless.recording import Array, Gnss, Odometer
 
 _SPAN: Final = 10.0
 """Seconds over which displacements are compared: long against the noise of a fix."""
@@ -16,7 +17,14 @@ _FAR: Final = 30.0
 """Displacement [m] from which on a pair is compared: ten times a single point's noise."""
 _ENOUGH: Final = 30
 """Pairs below which nothing is concluded."""
-_UNITS: Final = {3.6: "km/h", 1 / 0.514444: "knots", 1 / 0.3048: "ft/s", 100.0: "cm/s", 1000.0: "mm/s"}
+_UNITS: Final = {
+    3.6: "km/h",
+    1 / 0.44704: "mph",
+    1 / 0.514444: "knots",
+    1 / 0.3048: "ft/s",
+    100.0: "cm/s",
+    1000.0: "mm/s",
+}
 
 
 def check_velocity(log: Log, gnss: Gnss) -> None:
@@ -54,9 +62,64 @@ def check_velocity(log: Log, gnss: Gnss) -> None:
             cure = "v_north and v_east, or lat and lon, look exchanged: swap them"
         log.refuse(f"velocity does not point along the track (median cosine {along:.2f})", cure)
     if not 0.7 < ratio < 1.4:
-        unit = next((u for x, u in _UNITS.items() if abs(ratio / x - 1.0) < 0.08), None)
-        cure = f"it looks like {unit}" if unit else "check its unit"
-        log.refuse(f"velocity is {ratio:.3g} times what the positions show", f"{cure}: log deg and m/s")
+        log.refuse(
+            f"velocity is {ratio:.3g} times what the positions show", f"{_unit(ratio)}: log deg and m/s"
+        )
+
+
+def check_odometer(log: Log, wheels: Odometer, gnss: Gnss) -> None:
+    """Refuse wheel speeds whose way is not nearly as long as the positions show.
+
+    Parameters
+    ----------
+    log : Log
+        For the error.
+    wheels : Odometer
+    gnss : Gnss
+
+    Raises
+    ------
+    RecordingError
+        If the way is another, by more than a scale error or winding roads explain.
+    """
+    known = np.isfinite(gnss.lla).all(axis=1)
+    known &= (gnss.time >= wheels.time[0]) & (gnss.time <= wheels.time[-1])
+    t, lla = gnss.time[known], gnss.lla[known]
+    first, last = _apart(t)
+    way = np.concatenate(
+        [[0.0], np.cumsum(0.5 * np.diff(wheels.time) * (wheels.speed[1:] + wheels.speed[:-1]))]
+    )
+    rolled = np.interp(t[last], wheels.time, way) - np.interp(t[first], wheels.time, way)
+    moved = np.hypot(*_metres(lla, first, last).T)
+    far = moved > _FAR
+    if far.sum() < _ENOUGH:
+        return
+    ratio = float(np.median(rolled[far] / moved[far]))
+    if not 0.7 < ratio < 1.4:
+        log.refuse(f"wheel speed is {ratio:.3g} times what the positions show", f"{_unit(ratio)}: log m/s")
+
+
+def _unit(ratio: float) -> str:
+    unit = next((u for x, u in _UNITS.items() if abs(ratio / x - 1.0) < 0.08), None)
+    return f"it looks like {unit}" if unit else "check its unit"
+
+
+def _apart(t: Array) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Pairs of epochs about ten seconds apart."""
+    first = np.arange(len(t))
+    last = np.searchsorted(t, t + _SPAN)
+    first, last = first[last < len(t)], last[last < len(t)]
+    near = t[last] - t[first] < 1.2 * _SPAN
+    return first[near], last[near]
+
+
+def _metres(lla: Array, first: NDArray[np.int64], last: NDArray[np.int64]) -> Array:
+    """North and east from one position to another."""
+    r_m, r_n = radii(np.sin(lla[:, 0]))
+    moved = lla[last, :2] - lla[first, :2]
+    moved[:, 0] *= r_m[first]
+    moved[:, 1] *= (r_n * np.cos(lla[:, 0]))[first]
+    return moved
 
 
 def _displacements(gnss: Gnss) -> tuple[Array, Array]:
@@ -65,16 +128,7 @@ def _displacements(gnss: Gnss) -> tuple[Array, Array]:
     t, lla, v = gnss.time[known], gnss.lla[known], gnss.v_n[known, :2]
     if len(t) > 5:  # spikes of single fixes are the navigator's to judge
         v[2:-2] = np.median(np.lib.stride_tricks.sliding_window_view(v.copy(), 5, axis=0), axis=-1)
-    first = np.arange(len(t))
-    last = np.searchsorted(t, t + _SPAN)
-    first, last = first[last < len(t)], last[last < len(t)]
-    near = t[last] - t[first] < 1.2 * _SPAN
-    first, last = first[near], last[near]
+    first, last = _apart(t)
     path = np.zeros_like(v)
     path[1:] = np.cumsum(0.5 * (v[1:] + v[:-1]) * np.diff(t)[:, None], axis=0)
-    r_m, r_n = radii(np.sin(lla[:, 0]))
-    ahead = path[last] - path[first]
-    moved = lla[last, :2] - lla[first, :2]
-    moved[:, 0] *= r_m[first]
-    moved[:, 1] *= (r_n * np.cos(lla[:, 0]))[first]
-    return ahead, moved
+    return path[last] - path[first], _metres(lla, first, last)

@@ -117,6 +117,11 @@ CASES = {
     "no fixes": (put("gnss", "fix", slice(None), 0), "0 of 499 rows hold a fix"),
     "shuffled fixes": (put("gnss", "time", slice(0, 200), 1050.0), "gnss.csv:"),
     "reference range": (scaled("reference", ["lat"], 100.0), "reference.csv:2: no place on earth"),
+    "wheels in km/h": (
+        scaled("odometer", ["speed"], 3.6),
+        "times what the positions show; it looks like km/h: log m/s",
+    ),
+    "wheels in mph": (scaled("odometer", ["speed"], 2.237), "it looks like mph: log m/s"),
     "odometer": (scaled("odometer", ["speed"], 1000.0), "odometer.csv:2: a speed of 1e+04 m/s"),
     "odometer column": (without("odometer", "speed"), "odometer.csv: no column speed"),
 }
