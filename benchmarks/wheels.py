@@ -2,7 +2,7 @@
 
     python benchmarks/wheels.py [--duration 900] [RECORDING ...]
 
-Drives are fused with `constraints`, `wheels` and `auto`, each the best of three: time against that of
+Drives are fused with `constraints`, `wheels` and `auto` in turns, each the best of five: time against that of
 `constraints`, and the share of one core that what was added takes while the drive lasts. Then one reading:
 the spectrum, and the likelihoods over six metres a second to either side.
 """
@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import argparse
 import time
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -25,14 +26,15 @@ from gapless.systems.fuse import fuse
 SYSTEMS = ("constraints", "wheels", "auto")
 
 
-def best(function, *args, repeats: int = 3) -> float:
-    """Least processor time of some calls [s]."""
+def best(*calls, repeats: int = 5) -> list[float]:
+    """Least processor time of each of some calls [s]; they take turns, for machines have bad minutes."""
     taken = []
     for _ in range(repeats):
-        begun = time.process_time()
-        function(*args)
-        taken.append(time.process_time() - begun)
-    return min(taken)
+        for call in calls:
+            begun = time.process_time()
+            call()
+            taken.append(time.process_time() - begun)
+    return [min(taken[k :: len(calls)]) for k in range(len(calls))]
 
 
 def reading() -> tuple[float, float]:
@@ -47,9 +49,11 @@ def reading() -> tuple[float, float]:
         memory = memory.after(heard)
     comb, speeds = memory.comb(), np.arange(4.0, 16.0, 0.08)
     comb.evidence(heard, speeds)
-    return best(lambda: [spectrum(*args) for _ in range(200)]) / 200, best(
-        lambda: [comb.evidence(heard, speeds) for _ in range(200)]
-    ) / 200
+    listening, weighing = best(
+        lambda: [spectrum(*args) for _ in range(200)],
+        lambda: [comb.evidence(heard, speeds) for _ in range(200)],
+    )
+    return listening / 200, weighing / 200
 
 
 def main() -> None:
@@ -64,10 +68,9 @@ def main() -> None:
     ]
     print(f"{'drive':24} {'Hz':>4} {'wheels':>8} {'auto':>8} {'share of a core':>16}")
     for log in logs:
-        taken = {name: best(fuse, log, named(name)) for name in SYSTEMS}
-        plain = taken["constraints"]
-        share = (taken["auto"] - plain) / log.duration
-        ratios = [taken[name] / plain for name in SYSTEMS[1:]]
+        plain, *more = best(*(partial(fuse, log, named(name)) for name in SYSTEMS))
+        share = (more[-1] - plain) / log.duration
+        ratios = [taken / plain for taken in more]
         print(
             f"{log.name:24} {log.imu.rate:4.0f} {ratios[0]:7.2f}x {ratios[1]:7.2f}x {100.0 * share:14.2f} %"
         )
