@@ -13,11 +13,16 @@ and the formulas hold as they stand: lambda never meets the nominal state.
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 import numpy as np
 
 from gapless.recording import Array
+
+
+ROUNDING: Final = 1e-8
+"""Of a filter's variance: a smoothed one that is smaller is a difference of two numbers that are nearly equal,
+and lost to rounding. Smoothed deviations are stated down to a ten-thousandth of the filter's."""
 
 
 class Correction(NamedTuple):
@@ -96,4 +101,6 @@ class Adjoint:
         p_s : ndarray, shape (n, n)
         """
         smaller = p - p @ self.matrix @ p
-        return -(p @ self.vector), 0.5 * (smaller + smaller.T)
+        smaller = 0.5 * (smaller + smaller.T)
+        np.fill_diagonal(smaller, np.maximum(np.diagonal(smaller), ROUNDING * np.diagonal(p)))
+        return -(p @ self.vector), smaller

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from gapless.filters.smoother import Adjoint, Correction
+from gapless.filters.smoother import ROUNDING, Adjoint, Correction
 from gapless.filters.update import assess, correct
 
 N, ROW, STEPS = 5, 32, 40
@@ -96,3 +96,13 @@ def test_the_last_moment_is_the_filter_s():
     dx, p = Adjoint(N).smooth(filtered[-1][1])
     assert not dx.any()
     assert np.allclose(p, filtered[-1][1], rtol=1e-15)
+
+
+def test_what_rounding_leaves_is_stated_as_no_less():
+    """A fix of a centimetre after a silence that made 200 m of it, its information wrong by 5e-9."""
+    p = np.diag([200.0**2, 1.0])
+    back = Adjoint(2)
+    back.matrix = np.diag([(1.0 + 5e-9) / (200.0**2 + 0.01**2), 0.0])
+    _, smaller = back.smooth(p)
+    assert smaller[0, 0] == pytest.approx(ROUNDING * 200.0**2)  # the difference is -1e-4 m^2
+    assert smaller[1, 1] == 1.0
