@@ -19,9 +19,8 @@ import numpy as np
 
 from gapless.recording import Array
 
-
 ROUNDING: Final = 1e-8
-"""Of a filter's variance: a smoothed one that is smaller is a difference of two numbers that are nearly equal,
+"""Of a filter's variance: a smaller smoothed one is a difference of two numbers that are nearly equal,
 and lost to rounding. Smoothed deviations are stated down to a ten-thousandth of the filter's."""
 
 
