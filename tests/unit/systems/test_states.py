@@ -1,4 +1,4 @@
-"""The 27 states of tan2015, and all 31 there are: honest, finite, and each told how well it was seen."""
+"""The 27 states of tan2015, and all 32 there are: honest, finite, and each told how well it was seen."""
 
 import numpy as np
 import pytest
@@ -94,13 +94,13 @@ def test_summary_page_and_terminal_tell_it(solution):
     assert "Gyro bias" in states_table(summary)
 
 
-def test_all_31_states_run(drive):
+def test_all_32_states_run(drive):
     text = RECIPE.replace("constraints = []\n", "").replace(
         '"velocity"]\n[imu]', '"velocity", "odometer"]\n[imu]'
     )
     found = fuse(drive, parse(text, "all.toml"))
     assert set(found.states) >= set(EXTRAS)
-    assert len(observability(found)) == Layout(tuple(EXTRAS)).n == 31 < ROW
+    assert len(observability(found)) == Layout(tuple(EXTRAS)).n == 32 == ROW
     for values in (*found.states.values(), *found.states_sd.values(), found.trajectory.sd):
         assert np.isfinite(values).all()
 
