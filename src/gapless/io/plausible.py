@@ -7,8 +7,8 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from gapless.earth import radii
 from gapless.io.log import Log
+from gapless.motion import offset_ned
 from gapless.recording import Array, Gnss, Odometer
 
 _SPAN: Final = 10.0
@@ -86,11 +86,9 @@ def check_odometer(log: Log, wheels: Odometer, gnss: Gnss) -> None:
     known &= (gnss.time >= wheels.time[0]) & (gnss.time <= wheels.time[-1])
     t, lla = gnss.time[known], gnss.lla[known]
     first, last = _apart(t)
-    way = np.concatenate(
-        [[0.0], np.cumsum(0.5 * np.diff(wheels.time) * (wheels.speed[1:] + wheels.speed[:-1]))]
-    )
+    way = _integral(wheels.time, wheels.speed)
     rolled = np.interp(t[last], wheels.time, way) - np.interp(t[first], wheels.time, way)
-    moved = np.hypot(*_metres(lla, first, last).T)
+    moved = np.hypot(*offset_ned(lla[last], lla[first])[:, :2].T)
     far = moved > _FAR
     if far.sum() < _ENOUGH:
         return
@@ -113,13 +111,11 @@ def _apart(t: Array) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     return first[near], last[near]
 
 
-def _metres(lla: Array, first: NDArray[np.int64], last: NDArray[np.int64]) -> Array:
-    """North and east from one position to another."""
-    r_m, r_n = radii(np.sin(lla[:, 0]))
-    moved = lla[last, :2] - lla[first, :2]
-    moved[:, 0] *= r_m[first]
-    moved[:, 1] *= (r_n * np.cos(lla[:, 0]))[first]
-    return moved
+def _integral(t: Array, rate: Array) -> Array:
+    """Of a speed or a velocity, by trapezia, zero at the first epoch."""
+    found = np.zeros_like(rate)
+    found[1:] = np.cumsum((0.5 * (rate[1:] + rate[:-1]).T * np.diff(t)).T, axis=0)
+    return found
 
 
 def _displacements(gnss: Gnss) -> tuple[Array, Array]:
@@ -129,6 +125,5 @@ def _displacements(gnss: Gnss) -> tuple[Array, Array]:
     if len(t) > 5:  # spikes of single fixes are the navigator's to judge
         v[2:-2] = np.median(np.lib.stride_tricks.sliding_window_view(v.copy(), 5, axis=0), axis=-1)
     first, last = _apart(t)
-    path = np.zeros_like(v)
-    path[1:] = np.cumsum(0.5 * (v[1:] + v[:-1]) * np.diff(t)[:, None], axis=0)
-    return path[last] - path[first], _metres(lla, first, last)
+    path = _integral(t, v)
+    return path[last] - path[first], offset_ned(lla[last], lla[first])[:, :2]

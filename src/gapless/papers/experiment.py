@@ -13,7 +13,7 @@ from gapless.laboratory.pool import Progress, in_order
 from gapless.laboratory.study import Source
 from gapless.papers import drives, road
 from gapless.papers.jobs import Curve, Job, Outcome, Ready, Sample, Track, prepare
-from gapless.papers.kept import load, place, save
+from gapless.papers.kept import once
 from gapless.papers.model import Experiment, Paper
 from gapless.papers.studies import STUDIES, Study
 
@@ -163,7 +163,7 @@ def reproduce(
         if progress is not None:
             progress(100.0 * done / len(jobs))
 
-    work = execute if kept is None else partial(execute_once, kept)
+    work = execute if kept is None else partial(once, kept, execute)
     outcomes = in_order(work, [job for _, job in jobs], processes, tell)
     for (found, _), outcome in zip(jobs, outcomes, strict=True):
         _gather(found, outcome)
@@ -180,32 +180,6 @@ def _jobs(
             yield Job(experiment, ready, k + 1, shown=k == 0)
         else:
             yield from (Job(experiment, (one,), source=sources[k], shown=k == 0) for one in ready)
-
-
-def execute_once(kept: Path, job: Job) -> Outcome:
-    """What one process does, unless it was done before.
-
-    Parameters
-    ----------
-    kept : Path
-        Folder of outcomes.
-    job : Job
-
-    Returns
-    -------
-    Outcome
-
-    Raises
-    ------
-    GaplessError
-        If a recording cannot be read.
-    """
-    path = place(kept, job)
-    outcome = load(path)
-    if outcome is None:
-        outcome = execute(job)
-        save(path, outcome)
-    return outcome
 
 
 def execute(job: Job) -> Outcome:

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import Final, NamedTuple
 
 from gapless.errors import ConfigError, GaplessError
 from gapless.evaluation import Errors, Scores
-from gapless.laboratory.study import Source, Stored
+from gapless.laboratory.study import Source
 from gapless.papers.measure import measure
 from gapless.papers.model import SAME_CLOCK, WHITE, Experiment, Method, Window
 from gapless.recording import Array, Recording
@@ -113,11 +112,6 @@ class Job:
     seed: int = 0
     source: Source | None = None
     shown: bool = False
-
-    @property
-    def paths(self) -> tuple[Path, ...]:
-        """Files and folders that it reads."""
-        return self.source.paths if isinstance(self.source, Stored) else ()
 
 
 @dataclass

@@ -7,6 +7,7 @@ numbers in msgpack, so that what is read back has the bits of what was computed.
 from __future__ import annotations
 
 import hashlib
+from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
@@ -16,77 +17,57 @@ import msgspec
 import numpy as np
 
 from gapless.io.writers.atomic import atomic
+from gapless.laboratory.study import Stored
 from gapless.papers.jobs import Job, Outcome
 from gapless.recording import Array
+from gapless.sweeps.run import versions
+from gapless.sweeps.sources import fingerprint
 
 FOLDER: Final = "unfinished"
 """Where they are, in the folder of the results."""
 
 
-def place(folder: Path, job: Job) -> Path:
-    """Where the outcome of a job is kept.
+def once(folder: Path, work: Callable[[Job], Outcome], job: Job) -> Outcome:
+    """The outcome of a job: read where it is kept, and kept otherwise, whole or not at all.
 
     Parameters
     ----------
     folder : Path
+        Made if it is not there.
+    work : callable
+        Does a job.
     job : Job
 
     Returns
     -------
-    Path
+    Outcome
     """
-    files = [file for path in job.paths for file in _files(path)]
-    drive = job.experiment.drive
-    told = [
-        _code(),
-        (job.experiment.name, repr(job.experiment.road), repr(drive and replace(drive, segments=""))),
-        [(r.method.name, r.method.smoothed, msgspec.to_builtins(r.system)) for r in job.ready],
-        (job.seed, job.shown),
-        [(str(f.resolve()), f.stat().st_size, f.stat().st_mtime_ns) for f in files],
-    ]
-    return folder / f"{hashlib.sha256(msgspec.msgpack.encode(told)).hexdigest()[:24]}.msgpack"
-
-
-def load(path: Path) -> Outcome | None:
-    """An outcome that was kept.
-
-    Parameters
-    ----------
-    path : Path
-
-    Returns
-    -------
-    Outcome or None
-        None where there is none, or not a whole one.
-    """
+    path = folder / f"{_key(job)}.msgpack"
     try:
         return msgspec.msgpack.decode(path.read_bytes(), type=Outcome, dec_hook=_decoded)
-    except (FileNotFoundError, msgspec.DecodeError):
-        return None
-
-
-def save(path: Path, outcome: Outcome) -> None:
-    """Keep an outcome, whole or not at all.
-
-    Parameters
-    ----------
-    path : Path
-        Its folder is made if it is not there.
-    outcome : Outcome
-    """
+    except (FileNotFoundError, msgspec.DecodeError):  # not there, or damaged
+        outcome = work(job)
     with atomic(path) as made:
         made.write_bytes(msgspec.msgpack.encode(outcome, enc_hook=_encoded))
+    return outcome
 
 
-def _files(path: Path) -> list[Path]:
-    return sorted(p for p in path.iterdir() if p.is_file()) if path.is_dir() else [path]
+def _key(job: Job) -> str:
+    drive = job.experiment.drive
+    files = [str(path) for path in job.source.paths] if isinstance(job.source, Stored) else []
+    told = [
+        (_code(), versions()),
+        (job.experiment.name, repr(job.experiment.road), repr(drive and replace(drive, segments=""))),
+        [(r.method.name, r.method.smoothed, msgspec.to_builtins(r.system)) for r in job.ready],
+        (job.seed, job.shown, repr(job.source), fingerprint(files)),
+    ]
+    return hashlib.sha256(msgspec.msgpack.encode(told)).hexdigest()[:24]
 
 
 @cache
 def _code() -> str:
     """A digest of this package's source: other code, other outcomes."""
-    found = hashlib.sha256()
-    root = Path(__file__).parents[1]
+    found, root = hashlib.sha256(), Path(__file__).parents[1]
     for path in sorted(p for p in root.rglob("*") if p.suffix in {".py", ".toml"}):
         found.update(f"{path.relative_to(root)}\n".encode() + path.read_bytes())
     return found.hexdigest()

@@ -12,11 +12,13 @@ from small_papers import DRIVE, experiment
 
 from gapless.errors import ConfigError, MissingExtraError
 from gapless.laboratory.render import as_text
+from gapless.laboratory.study import Simulated
 from gapless.papers import figures as drawing
 from gapless.papers.drives import make
 from gapless.papers.experiment import execute, reproduce
 from gapless.papers.folder import FILES, means, writers
-from gapless.papers.jobs import Job, prepare
+from gapless.papers.jobs import Job, Outcome, prepare
+from gapless.papers.kept import once
 from gapless.papers.page import summary
 from gapless.papers.start import fuse_from
 from gapless.papers.tables import number, tables
@@ -145,3 +147,20 @@ def test_without_matplotlib(done, monkeypatch):
 )  # fmt: skip
 def test_three_significant_digits(value, said):
     assert number(value) == said
+
+
+def test_what_is_kept_of_one_job_is_not_another_s(tmp_path):
+    town = experiment()
+    ready, _ = prepare(town)
+    drives = [Simulated("urban", "consumer", 60.0, seed) for seed in (1, 2)]
+    jobs = [
+        *(Job(town, ready[:1], source=drive) for drive in drives),
+        Job(town, ready[1:], source=drives[0]),
+        Job(town, ready, 1),
+        Job(town, ready, 2),
+        Job(replace(town, drive=replace(DRIVE, duration=61.0)), ready, 1),
+    ]
+    for k, job in enumerate(jobs * 2):  # the second time nothing is done
+        found = once(tmp_path, lambda job: Outcome(failed={"job": str(jobs.index(job))}), job)
+        assert found.failed == {"job": str(k % len(jobs))}
+    assert len(list(tmp_path.iterdir())) == len(jobs)
