@@ -21,12 +21,15 @@ class Heard(NamedTuple):
         What was read, and its standard deviation as the filter was told [m/s].
     own : float
         The filter's speed before [m/s].
+    slips : float
+        Probability that the wheels slipped.
     """
 
     time: float
     speed: float
     sd: float
     own: float
+    slips: float
 
 
 @dataclass(frozen=True, eq=False)

@@ -229,8 +229,8 @@ class Wheels:
             self.refused += 1
             return ()
         speed = float(np.linalg.norm(belief.estimate()[3:6]))
-        r = self._doubted(time, found, speed)
-        self.readings = (*self.readings, Heard(time, speed + found.off, math.sqrt(r), speed))
+        r, slips = self._doubted(time, found, speed)
+        self.readings = (*self.readings, Heard(time, speed + found.off, math.sqrt(r), speed, slips))
         return (Saying("bridge_speed", Observation(np.array([found.off]), h, np.array([[r]]))),)
 
     def _follow(self, belief: Belief, time: float) -> None:
@@ -242,13 +242,13 @@ class Wheels:
             self.hold = Hold.begin(time - self.patience, speed_sd(belief) ** 2, self.drift.rate, before)
         self.course = self.course.to(time, v / np.linalg.norm(v), corrected)
 
-    def _doubted(self, time: float, found: Peak, speed: float) -> float:
-        """Variance that a reading counts with, greater where wheels seem to slip [m^2/s^2]."""
+    def _doubted(self, time: float, found: Peak, speed: float) -> tuple[float, float]:
+        """Variance that a reading counts with [m^2/s^2], and the probability of slip that widens it."""
         own = found.variance + self.floor**2
         assert self.hold is not None
         assert self.course is not None
         self.hold = self.hold.after(time, found.off + self.course.gained, own, speed)
-        return self.inflate * own / self.hold.rolls
+        return self.inflate * own / self.hold.rolls, self.hold.slips
 
 
 def speed_sd(belief: Belief) -> float:

@@ -11,7 +11,7 @@ import numpy as np
 
 from gapless import __version__
 from gapless.evaluation import Scores, consistency
-from gapless.exhibits import Candidate, Rehearsals, WheelsHeard
+from gapless.exhibits import Candidate, Heard, Rehearsals, WheelsHeard
 from gapless.motion import horizontal_velocity, motion
 from gapless.recording import Trajectory
 from gapless.reports.numbers import known, measured, plain
@@ -189,7 +189,7 @@ def _outages(solution: Solution, scores: Scores | None) -> list[dict[str, Any]]:
 
 def _wheels(e: WheelsHeard) -> dict[str, Any]:
     """Orders as first and step; heights by channel."""
-    columns = zip(*e.readings, strict=True) if e.readings else ((),) * 4
+    columns = zip(*e.readings, strict=True) if e.readings else ((),) * len(Heard._fields)
     return {
         "spectra": round(e.spectra),
         "circumference": plain(None if e.circumference is None else round(e.circumference, 3)),
@@ -199,8 +199,7 @@ def _wheels(e: WheelsHeard) -> dict[str, Any]:
         "height": plain(np.round(e.height, 3)),
         "error": plain(np.round(e.error, 3)),
         "readings": {
-            key: plain(np.round(column, 3))
-            for key, column in zip(("time", "speed", "sd", "own"), columns, strict=True)
+            key: plain(np.round(column, 3)) for key, column in zip(Heard._fields, columns, strict=True)
         },
         "refused": e.refused,
     }

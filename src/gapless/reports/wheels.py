@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from gapless.exhibits import Heard
 from gapless.recording import Array, Gnss
 from gapless.reports.charts import chart
 from gapless.reports.numbers import known, number
@@ -50,9 +51,19 @@ def text(summary: Mapping[str, Any]) -> str:
             f"{number(float(np.median(readings['sd'])), 'm/s', 2)} as a rule; {refused} spectra said too "
             "little and were left out."
         )
+        words.append(_slip(np.array(readings["slips"], float)))
     else:
         words.append(f"No speed was read in silence ({refused} spectra said too little).")
     return f'<p>{" ".join(words)}</p><div class="group" id="{HOST}"></div>'
+
+
+def _slip(slips: Array) -> str:
+    """How many windows were of slipping wheels, in words."""
+    windows = round(float(slips.sum()))
+    if windows == 0:
+        return "No slip was noticed."
+    seemed = "One of them seems" if windows == 1 else f"{windows} of them seem"
+    return f"{seemed} to be of wheels that slipped."
 
 
 def charts(summary: Mapping[str, Any], gnss: Gnss | None) -> Iterator[dict[str, Any]]:
@@ -94,7 +105,7 @@ def _orders(told: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _speeds(readings: Mapping[str, Any], start: float, gnss: Gnss | None) -> Iterator[dict[str, Any]]:
-    time, speed, sd, own = (np.array(readings[key], float) for key in ("time", "speed", "sd", "own"))
+    time, speed, sd, own, slips = (np.array(readings[key], float) for key in Heard._fields)
     series, none = [("wheels", speed), ("filter before", own)], np.full(len(time), math.nan)
     bands = np.column_stack([sd, none])
     withheld = none if gnss is None else speed_at(gnss, time)
@@ -113,6 +124,11 @@ def _speeds(readings: Mapping[str, Any], start: float, gnss: Gnss | None) -> Ite
         "lift": True,
         "note": "Shaded: the standard deviation that the filter was told.",
     }
+    note = "Judged by how readings follow the inertial course; the likelier, the less a reading counts."
+    slip = chart(
+        "", "Probability that the wheels slip", "", time - start, [("slip", slips)], range=(0.0, 1.0)
+    )
+    yield slip | {"host": HOST, "note": note}
 
 
 def speed_at(gnss: Gnss, time: Array) -> Array:

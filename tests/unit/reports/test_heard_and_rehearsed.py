@@ -22,7 +22,7 @@ def run():
     recording, solution = make(length=400.0, outages=((240.0, 300.0),))
     rng = np.random.default_rng(2)
     orders = 0.2 + 0.01 * np.arange(311)
-    readings = tuple(Heard(START + 245.0 + k, 8.0, 0.2, 8.1) for k in range(20))
+    readings = tuple(Heard(START + 245.0 + k, 8.0, 0.2, 8.1, 0.9 if k in (7, 8) else 0.02) for k in range(20))
     heard = WheelsHeard(
         200.4,
         orders,
@@ -50,6 +50,7 @@ def test_summary_says_it_all_and_is_json(run):
     assert np.shape(told["wheels"]["height"]) == np.shape(told["wheels"]["error"]) == (6, 311)
     assert told["wheels"]["circumference"] == 2.0
     assert told["wheels"]["readings"]["own"] == [8.1] * 20
+    assert max(told["wheels"]["readings"]["slips"]) == 0.9
     assert told["rehearsals"]["performances"][0]["worst"] == {"nobody": 12.0, "wheels": 6.0}
     assert told["rehearsals"]["choices"][-1] == {"time": START + 180.0, "candidate": "wheels", "scale": 1.3}
 
@@ -60,6 +61,7 @@ def test_page_has_both_sections_in_words(run):
     assert '<section id="wheels">' in text
     assert '<section id="rehearsals">' in text
     assert "20 speeds were read" in text
+    assert "2 of them seem to be of wheels that slipped." in text
     assert "2.00\u00a0m</b> circumference" in text
     # of the one rehearsal that the wheels took part in
     assert "<b>12.0\u00a0m</b> without, and <b>6.00\u00a0m</b> with wheels" in text
@@ -69,12 +71,14 @@ def test_page_has_both_sections_in_words(run):
 def test_charts(run):
     recording, solution = run
     told = summarise(solution)
-    orders, speeds, off = wheels.charts(told, recording.gnss)
+    orders, speeds, off, slip = wheels.charts(told, recording.gnss)
     assert orders["marks"] == pytest.approx([0.5, 1.0, 1.5, 2.0, 2.5, 3.0])
     assert [name for name, _ in speeds["series"]] == ["wheels", "filter before", "fixes, withheld"]
     assert off["title"] == "Reading less the withheld fixes"
+    assert slip["range"] == [0.0, 1.0]
+    assert np.argmax(slip["series"][0][1]) == 7
     alone = [one["title"] for one in wheels.charts(told, None)]
-    assert alone[-1] == "Reading less the filter before"
+    assert alone[-2] == "Reading less the filter before"
     worst, factor = rehearsals.charts(told)
     # nobody until 180 s, the second series from then on
     assert [strip[2] for strip in worst["strips"]] == [0, 1]
