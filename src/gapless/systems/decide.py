@@ -16,6 +16,7 @@ from gapless.recording import Array, Recording, Trajectory
 from gapless.sensors.vibration import gyro_density
 from gapless.solution import Decision
 from gapless.systems.build import budget, lever_arm, settings, stamps
+from gapless.systems.clocks import believed, clock_decision
 from gapless.systems.learning import BridgeUse
 from gapless.systems.recipe import Adaptation, RehearsalUse, System
 from gapless.units import DEG
@@ -34,8 +35,6 @@ LOOSE = 30.0
 SETTLED = 0.008
 """Passes end when no offset moves by more [s], or by more than two of its standard deviations: each
 goes about two thirds of what is left."""
-VAGUE = 0.1
-"""An offset is not believed where its standard deviation is larger [s]."""
 
 
 class Mounting(NamedTuple):
@@ -147,12 +146,11 @@ class _FirstPass:
         path, (blocks, sds) = navigator.journal.trajectory(), navigator.journal.blocks()
         self.span = float(path.time[-1] - path.time[0])
         self._learn_mounting(blocks, sds)
-        settled = True
-        for channel, estimate in self._estimates(path, blocks).items():
-            before = self.offsets[channel]
-            self.found[channel] = estimate
-            self.offsets[channel] = estimate.value if estimate.sd < VAGUE else 0.0
-            settled &= abs(self.offsets[channel] - before) < max(SETTLED, 2.0 * estimate.sd)
+        settled, before = True, dict(self.offsets)
+        self.found = self._estimates(path, blocks)
+        for channel, estimate in self.found.items():
+            self.offsets[channel] = believed(channel, self.found, self.given).value
+            settled &= abs(self.offsets[channel] - before[channel]) < max(SETTLED, 2.0 * estimate.sd)
         return settled
 
     def _estimates(self, path: Trajectory, blocks: dict[str, Array]) -> dict[str, Offset]:
@@ -189,22 +187,8 @@ class _FirstPass:
         """One decision for each channel that the recording has."""
         present = {"position": True, "velocity": self.past.gnss.has_velocity}
         present["odometer"] = self.past.odometer is not None
-        return [self._clock_decision(c) for c in CHANNELS if present[c]]
-
-    def _clock_decision(self, channel: str) -> Decision:
-        name, value = f"clock offset, {channel}", self.offsets[channel]
-        if channel in self.given:
-            return Decision(name, value, "s", "user", "given in the configuration")
-        found = self.found.get(channel)
-        if found is None or not np.isfinite(found.sd):
-            return Decision(name, value, "s", "default", "the motion says too little; stamps taken as logged")
-        evidence = (
-            f"{found.epochs} readings against the inertial motion of {self.span:.0f} s; "
-            f"misfit {100.0 * (1.0 - 1.0 / found.gain):.1f} % less than without"
-        )
-        if found.sd >= VAGUE:
-            evidence = f"found {found.value:+.3f} s, too vague to act on; " + evidence
-        return Decision(name, round(value, 4), "s", "data", evidence, found.sd)
+        chosen = [c for c in CHANNELS if present[c]]
+        return [clock_decision(c, self.found, self.given, self.span) for c in chosen]
 
     def mounting_decisions(self) -> list[Decision]:
         """Pitch and yaw of the car's forward axis in the box."""
