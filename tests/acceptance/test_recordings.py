@@ -106,6 +106,16 @@ def test_shifted_stamps_move_the_offset_by_as_much(name, shift):
         assert abs(change[channel] + shift) < 0.02, channel
 
 
+def test_vague_offset_of_positions_follows_that_of_velocities():
+    """In the city some minutes of positions say little of their clock; velocities of the same receiver do."""
+    log = recording("kingston")
+    late = replace(log, gnss=replace(log.gnss, time=log.gnss.time + 0.5))
+    found = decide(late, System(), late.start + 960.0).decisions
+    assert "weighed against" in next(d.evidence for d in found if d.name == "clock offset, position")
+    # What is weighed is known better than to 0.1 s; taken as logged it would be off by 0.5 s.
+    assert clock(found, "position") == pytest.approx(-0.5, abs=0.1)
+
+
 def test_two_devices_in_one_car_agree():
     """On GNSS time, where both were driving with GNSS: their raw fixes differ by 2.1 m RMS."""
     one, other = ("beijing-e1", "beijing-e2")
