@@ -1,13 +1,22 @@
-"""Jobs over processes, their outcomes in the order of the jobs."""
+"""Processes that end with their parent, and jobs over them, their outcomes in the order of the jobs.
+
+Nothing heavy is imported here or by the package: a new process imports this module first, and says
+what the numerical libraries are to find when their turn comes.
+"""
 
 from __future__ import annotations
 
-import multiprocessing
+import os
 import signal
+import threading
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from contextlib import contextmanager
-from typing import TypeVar
+from multiprocessing import get_context
+from multiprocessing.connection import Connection
+from typing import Final, TypeVar
+
+_THREADS: Final = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
 
 T = TypeVar("T")
 R = TypeVar("R")
@@ -51,20 +60,42 @@ def in_order(
 @contextmanager
 def _workers(count: int) -> Iterator[ProcessPoolExecutor]:
     """Processes that end with the block, whatever they are doing then."""
-    others = set(multiprocessing.active_children())
-    pool = ProcessPoolExecutor(
-        count, mp_context=multiprocessing.get_context("spawn"), initializer=_leave_interrupts_to_the_parent
-    )
+    pool = Processes(count)
     try:
         yield pool
-    except BaseException:
-        pool.shutdown(wait=False, cancel_futures=True)
-        for child in set(multiprocessing.active_children()) - others:
-            child.terminate()
-        raise
     finally:
-        pool.shutdown()
+        pool.dismiss()
 
 
-def _leave_interrupts_to_the_parent() -> None:
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
+class Processes(ProcessPoolExecutor):
+    """A pool of new processes, one thread each, that end when they are dismissed or their parent dies.
+
+    Parameters
+    ----------
+    count : int
+        Of processes.
+    """
+
+    def __init__(self, count: int) -> None:
+        context = get_context("spawn")
+        # the pipe ends when this process closes it, and by itself when this process is killed
+        watched, self._lifeline = context.Pipe(duplex=False)
+        super().__init__(count, context, _begin, (watched,))
+
+    def dismiss(self) -> None:
+        """End the processes, whatever they do."""
+        self._lifeline.close()
+        self.shutdown(wait=True, cancel_futures=True)
+
+
+def _begin(lifeline: Connection) -> None:
+    os.environ.update(dict.fromkeys(_THREADS, "1"))
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the parent to answer
+    threading.Thread(target=_end_with, args=(lifeline,), daemon=True).start()
+
+
+def _end_with(lifeline: Connection) -> None:
+    try:
+        lifeline.poll(None)
+    finally:  # Windows raises where others return
+        os._exit(1)

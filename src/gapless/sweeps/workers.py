@@ -1,24 +1,16 @@
-"""Who does the runs: processes of this machine, or a dask cluster.
-
-Nothing heavy is imported here or by the package: a new process imports this module first, and says
-what the numerical libraries are to find when their turn comes.
-"""
+"""Who does the runs: processes of this machine, or a dask cluster."""
 
 from __future__ import annotations
 
 import os
-import signal
-import threading
 from collections.abc import Callable
-from concurrent.futures import BrokenExecutor, Executor, ProcessPoolExecutor
+from concurrent.futures import BrokenExecutor, Executor
 from dataclasses import dataclass
-from multiprocessing import get_context
-from multiprocessing.connection import Connection
 from typing import Any, Final
 
 from gapless.errors import ConfigError, MissingExtraError, SweepError
+from gapless.laboratory.pool import Processes
 
-_THREADS: Final = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
 _DASK: Final = "dask://"
 ANSWER: Final = 10.0
 """A scheduler must answer within this [s]."""
@@ -46,40 +38,6 @@ class Crew:
     workers: int
     ahead: int
     blames: tuple[type[Exception], ...] = ()
-
-
-class Processes(ProcessPoolExecutor):
-    """A pool of new processes, one thread each, that end when they are dismissed or their parent dies.
-
-    Parameters
-    ----------
-    count : int
-        Of processes.
-    """
-
-    def __init__(self, count: int) -> None:
-        context = get_context("spawn")
-        # the pipe ends when this process closes it, and by itself when this process is killed
-        watched, self._lifeline = context.Pipe(duplex=False)
-        super().__init__(count, context, _begin, (watched,))
-
-    def dismiss(self) -> None:
-        """End the processes, whatever they do."""
-        self._lifeline.close()
-        self.shutdown(wait=True, cancel_futures=True)
-
-
-def _begin(lifeline: Connection) -> None:
-    os.environ.update(dict.fromkeys(_THREADS, "1"))
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the parent to answer
-    threading.Thread(target=_end_with, args=(lifeline,), daemon=True).start()
-
-
-def _end_with(lifeline: Connection) -> None:
-    try:
-        lifeline.poll(None)
-    finally:  # Windows raises where others return
-        os._exit(1)
 
 
 def crew(text: str = "processes", jobs: int | None = None) -> Crew:
