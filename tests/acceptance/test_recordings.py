@@ -5,6 +5,7 @@ looked at otherwise, and without them everything here is skipped.
 """
 
 import os
+import tomllib
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
@@ -13,6 +14,7 @@ import numpy as np
 import pytest
 
 from gapless import io
+from gapless.errors import RecordingError
 from gapless.evaluation import score, solution_errors
 from gapless.evaluation.errors import gnss_truth
 from gapless.evaluation.statistics import rms
@@ -104,6 +106,15 @@ def test_shifted_stamps_move_the_offset_by_as_much(name, shift):
     print(name, shift, change)
     for channel in CHANNELS:
         assert abs(change[channel] + shift) < 0.02, channel
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_axes_are_named_where_nobody_states_them(name, tmp_path):
+    for file in (DATA / name).glob("*.parquet"):
+        (tmp_path / file.name).symlink_to(file)
+    stated = tomllib.loads((DATA / name / "recording.toml").read_text())["imu_axes"]
+    with pytest.raises(RecordingError, match=f'say so with imu_axes = "{stated}"'):
+        io.read(tmp_path)
 
 
 def test_vague_offset_of_positions_follows_that_of_velocities():

@@ -6,6 +6,7 @@ import numpy as np
 
 from gapless.io.inertial_log import imu_from_increments, imu_from_rates
 from gapless.io.log import Log
+from gapless.io.orientation import check_orientation
 from gapless.io.other_logs import odometer_from_log, reference_from_log
 from gapless.io.plausible import check_odometer
 from gapless.io.satellite_log import gnss_from_log
@@ -70,6 +71,7 @@ def assemble(
         ):
             reference_clock = "gnss"
     _check_overlap(imu, gnss, samples.time, fixes.time)
+    check_orientation(imu, samples, fixes, axes)
     return Recording(
         name=name,
         imu=samples,

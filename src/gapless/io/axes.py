@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import permutations
 from typing import Final
 
 import numpy as np
@@ -61,3 +62,22 @@ def axes_matrix(names: object, where: str = "imu_axes") -> Array:
             f'"{words[0]}-{words[1]}-{opposite}": check which axis is meant'
         )
     return matrix
+
+
+def nearest_axes(matrix: Array) -> str:
+    """What logged axes are called, each by the direction that it is nearest to.
+
+    Parameters
+    ----------
+    matrix : ndarray, shape (3, 3)
+        A rotation of vectors along the logged axes into forward-right-down.
+
+    Returns
+    -------
+    str
+        As `axes_matrix` takes it; of the 24 right-handed triples the one with the least angle to it.
+    """
+    triples = ("-".join(names) for names in permutations(_DIRECTIONS, 3))
+    columns = {t: np.array([_DIRECTIONS[word] for word in t.split("-")], float).T for t in triples}
+    fits = {t: float((m * matrix).sum()) for t, m in columns.items() if np.linalg.det(m) > 0.5}
+    return max(fits, key=lambda t: fits[t])

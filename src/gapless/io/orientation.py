@@ -1,0 +1,201 @@
+"""Do the logged axes point where they are said to? Gravity, accelerations and turns tell.
+
+The mean of the specific force points up. What GNSS says of the car's accelerations, forward and to the
+right, is what the accelerometers feel in the plane below; the angle between the two is the box's. Turns of
+the course are felt about the vertical alone. An axis that is taken for another one is 90 degrees off, or 180;
+boxes that sit askew are not meant, the filter finds their angles.
+"""
+
+from __future__ import annotations
+
+from typing import Final, NamedTuple
+
+import numpy as np
+
+from gapless.io.axes import nearest_axes
+from gapless.io.log import Log
+from gapless.motion import horizontal_velocity
+from gapless.recording import Array, Gnss, Imu
+from gapless.units import DEG
+
+_SPAN: Final = 4.0
+"""Seconds over which accelerations are compared: long against the offset of a clock."""
+_SPEED: Final = 3.0
+"""Slower than this, a course says too little [m/s]."""
+_ENOUGH: Final = 60
+"""Epochs, a second apart, below which nothing is concluded."""
+_COHERENT: Final = 0.6
+"""What is felt and what GNSS says must agree as well as this at some angle, or nothing is concluded."""
+_TURNING: Final = 0.8
+"""The same for rates of turn."""
+_FAR: Final = 60.0 * DEG
+"""An axis so far off is another one: half the way between two is 45 degrees."""
+
+
+class Felt(NamedTuple):
+    """Motion as two sensors tell it, row by row.
+
+    Parameters
+    ----------
+    force : ndarray, shape (n, 3)
+        Mean specific force [m/s^2], box axes.
+    rate : ndarray, shape (n, 3)
+        Mean angular rate [rad/s], box axes.
+    acceleration : ndarray, shape (n, 2)
+        Forward and to the right, by GNSS [m/s^2].
+    turn : ndarray, shape (n,)
+        Rate of the course, by GNSS [rad/s].
+    """
+
+    force: Array
+    rate: Array
+    acceleration: Array
+    turn: Array
+
+
+def check_orientation(log: Log, imu: Imu, gnss: Gnss, axes: Array | None) -> None:
+    """Refuse a log whose axes point elsewhere than is said, or whose gyros turn about another axis.
+
+    Parameters
+    ----------
+    log : Log
+        Of the IMU, for the error.
+    imu : Imu
+        Its samples, along the axes that are said to be forward, right and down.
+    gnss : Gnss
+    axes : ndarray, shape (3, 3), optional
+        Logged axes to forward-right-down, as is said; the same if not given.
+
+    Raises
+    ------
+    RecordingError
+        If gravity, accelerations or turns say otherwise, and clearly.
+    """
+    told = felt(imu, gnss)
+    if len(told.turn) < _ENOUGH:
+        return
+    vehicle, coherence = vehicle_axes(told)
+    axis, correlation = turning_axis(told)
+    apart = _angle(float(axis @ vehicle[2]))
+    if correlation > _TURNING and apart > _FAR:
+        log.refuse(
+            f"turns are felt {apart / DEG:.0f} degrees off the vertical that the accelerometers feel",
+            "columns of gyros or accelerometers are exchanged, or have the wrong sign: check both",
+        )
+    if coherence > _COHERENT and _angle(0.5 * (float(np.trace(vehicle)) - 1.0)) > _FAR:
+        given = "dtheta_x" in log
+        said = np.eye(3) if axes is None or given else axes
+        found = nearest_axes(vehicle @ said)
+        cure = "turn them to forward-right-down" if given else f'say so with imu_axes = "{found}"'
+        log.refuse(
+            f"x, y and z do not point {nearest_axes(said)}: by gravity and accelerations they point {found}",
+            cure,
+        )
+
+
+def _angle(cosine: float) -> float:
+    return float(np.arccos(np.clip(cosine, -1.0, 1.0)))
+
+
+def felt(imu: Imu, gnss: Gnss) -> Felt:
+    """Motion around each second in which the car drove.
+
+    Parameters
+    ----------
+    imu : Imu
+    gnss : Gnss
+
+    Returns
+    -------
+    Felt
+    """
+    time, v = _velocities(gnss)
+    half = 0.5 * _SPAN
+    begin, end = max(time[0], imu.time[0]) + half, min(time[-1], imu.time[-1]) - half
+    at = np.arange(begin, end, 1.0)
+    near = np.searchsorted(time, at + half) - np.searchsorted(time, at - half) >= 3
+    three = [np.column_stack([np.interp(at + s, time, c) for c in v.T]) for s in (-half, 0.0, half)]
+    drove = near & (np.min([np.hypot(*u.T) for u in three], axis=0) > _SPEED)
+    before, now, after = (u[drove] for u in three)
+    forward, gained = now / np.hypot(*now.T)[:, None], (after - before) / _SPAN
+    turned = np.arctan2(_cross(before, after), (before * after).sum(axis=1))
+    return Felt(
+        _mean(imu, imu.dvel, at[drove], half),
+        _mean(imu, imu.dtheta, at[drove], half),
+        np.column_stack([(forward * gained).sum(axis=1), _cross(forward, gained)]),
+        turned / _SPAN,
+    )
+
+
+def _velocities(gnss: Gnss) -> tuple[Array, Array]:
+    """Times and horizontal velocities, of positions where none is measured."""
+    known = np.isfinite(gnss.lla).all(axis=1)
+    time, lla, v_n = gnss.time[known], gnss.lla[known], gnss.v_n[known]
+    if len(time) < 2:
+        return np.zeros(1), np.zeros((1, 2))
+    v = horizontal_velocity(time, lla, v_n)
+    heard = np.isfinite(v).all(axis=1)
+    return (time[heard], v[heard]) if heard.any() else (np.zeros(1), np.zeros((1, 2)))
+
+
+def _cross(a: Array, b: Array) -> Array:
+    """How far b lies to the right of a, times both lengths."""
+    return np.asarray(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])
+
+
+def _mean(imu: Imu, gained: Array, at: Array, half: float) -> Array:
+    """Mean rate of what was gained in the samples around some times."""
+    sums = np.concatenate([np.zeros((1, 4)), np.cumsum(np.column_stack([gained, imu.dt]), axis=0)])
+    a, b = np.searchsorted(imu.time, at - half), np.searchsorted(imu.time, at + half)
+    parts = sums[b] - sums[a]
+    return np.asarray(parts[:, :3] / np.maximum(parts[:, 3:], 1e-9))
+
+
+def vehicle_axes(told: Felt) -> tuple[Array, float]:
+    """The car's axes in the box, and how well what is felt agrees with GNSS there.
+
+    Parameters
+    ----------
+    told : Felt
+
+    Returns
+    -------
+    axes : ndarray, shape (3, 3)
+        A rotation: rows are forward, right and down along the box's axes.
+    coherence : float
+        1 where accelerations agree entirely.
+    """
+    down = -told.force.mean(axis=0)
+    down = down / max(float(np.linalg.norm(down)), 1e-9)
+    e1 = np.cross(np.eye(3)[int(np.argmin(np.abs(down)))], down)
+    e1 /= np.linalg.norm(e1)
+    e2 = np.cross(down, e1)
+    seen = told.force @ e1 + 1j * (told.force @ e2)
+    said = told.acceleration @ np.array([1.0, 1j])
+    seen, said = seen - seen.mean(), said - said.mean()
+    agreed = np.vdot(said, seen)
+    size = float(np.linalg.norm(said) * np.linalg.norm(seen))
+    psi = float(np.angle(agreed))
+    forward = np.cos(psi) * e1 + np.sin(psi) * e2
+    return np.array([forward, np.cross(down, forward), down]), float(abs(agreed)) / max(size, 1e-9)
+
+
+def turning_axis(told: Felt) -> tuple[Array, float]:
+    """The box's axis that turns to the right go about, and how well they agree with the course.
+
+    Parameters
+    ----------
+    told : Felt
+
+    Returns
+    -------
+    axis : ndarray, shape (3,)
+        Of length one.
+    correlation : float
+    """
+    rate, turn = told.rate - told.rate.mean(axis=0), told.turn - told.turn.mean()
+    axis = turn @ rate
+    axis = axis / max(float(np.linalg.norm(axis)), 1e-12)
+    about = rate @ axis
+    size = float(np.linalg.norm(about) * np.linalg.norm(turn))
+    return axis, float(about @ turn) / max(size, 1e-12)
