@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gapless import attitude
+from gapless.motion import Sums
 from gapless.recording import Array, Imu, Trajectory
 
 STEP = 0.02
@@ -39,6 +40,10 @@ class Offset(NamedTuple):
     sd: float
     gain: float
     epochs: int
+
+    def later(self, seconds: float) -> Offset:
+        """The same for stamps that had so much added to them before [s]."""
+        return self._replace(value=self.value + seconds)
 
 
 class Curve(NamedTuple):
@@ -185,11 +190,9 @@ def velocity_curve(path: Trajectory, accel_bias: Array, imu: Imu) -> Curve:
     Curve
         North, east [m/s] at the path's times; no correction of a filter is in it.
     """
-    clock = np.concatenate([[imu.time[0] - imu.dt[0]], imu.time])
-    gained = np.concatenate([np.zeros((1, 3)), np.cumsum(imu.dvel, axis=0)])
-    spent = np.interp(path.time, clock, np.concatenate([[0.0], np.cumsum(imu.dt)]))
-    felt = np.column_stack([np.interp(path.time, clock, gained[:, i]) for i in range(3)])
-    step = np.diff(felt, axis=0) - accel_bias[:-1] * np.diff(spent)[:, None]
+    felt = Sums.of(imu, imu.dvel).at(path.time)
+    spent = Sums.of(imu, np.column_stack([imu.dt] * 3)).at(path.time)
+    step = np.diff(felt, axis=0) - accel_bias[:-1] * np.diff(spent, axis=0)
     c = attitude.to_matrix(attitude.from_euler(path.euler))
     turned = 0.5 * np.einsum("kij,kj->ki", c[:-1] + c[1:], step)[:, :2]
     return Curve(path.time, np.concatenate([np.zeros((1, 2)), np.cumsum(turned, axis=0)]))

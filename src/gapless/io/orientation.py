@@ -14,14 +14,12 @@ import numpy as np
 
 from gapless.io.axes import nearest_axes
 from gapless.io.log import Log
-from gapless.motion import horizontal_velocity
+from gapless.motion import Steered, Sums, rightward, steered
 from gapless.recording import Array, Gnss, Imu
 from gapless.units import DEG
 
 _SPAN: Final = 4.0
 """Seconds over which accelerations are compared: long against the offset of a clock."""
-_SPEED: Final = 3.0
-"""Slower than this, a course says too little [m/s]."""
 _ENOUGH: Final = 60
 """Epochs, a second apart, below which nothing is concluded."""
 _COHERENT: Final = 0.6
@@ -109,46 +107,18 @@ def felt(imu: Imu, gnss: Gnss) -> Felt:
     -------
     Felt
     """
-    time, v = _velocities(gnss)
-    half = 0.5 * _SPAN
-    begin, end = max(time[0], imu.time[0]) + half, min(time[-1], imu.time[-1]) - half
-    at = np.arange(begin, end, 1.0)
-    near = np.searchsorted(time, at + half) - np.searchsorted(time, at - half) >= 3
-    three = [np.column_stack([np.interp(at + s, time, c) for c in v.T]) for s in (-half, 0.0, half)]
-    drove = near & (np.min([np.hypot(*u.T) for u in three], axis=0) > _SPEED)
-    before, now, after = (u[drove] for u in three)
-    forward, gained = now / np.hypot(*now.T)[:, None], (after - before) / _SPAN
-    turned = np.arctan2(_cross(before, after), (before * after).sum(axis=1))
+    drove = steered(gnss, 0.5 * _SPAN)
+    inside = (drove.time - _SPAN > imu.time[0]) & (drove.time + _SPAN < imu.time[-1])
+    drove = Steered(*(column[inside] for column in drove))
+    a, b = drove.time - 0.5 * _SPAN, drove.time + 0.5 * _SPAN
+    angle, gained = Sums.of(imu, imu.dtheta), Sums.of(imu, imu.dvel)
+    forward, faster = drove.now / np.hypot(*drove.now.T)[:, None], (drove.after - drove.before) / _SPAN
     return Felt(
-        _mean(imu, imu.dvel, at[drove], half),
-        _mean(imu, imu.dtheta, at[drove], half),
-        np.column_stack([(forward * gained).sum(axis=1), _cross(forward, gained)]),
-        turned / _SPAN,
+        (gained.at(b) - gained.at(a)) / _SPAN,
+        (angle.at(b) - angle.at(a)) / _SPAN,
+        np.column_stack([(forward * faster).sum(axis=1), rightward(forward, faster)]),
+        drove.turned / _SPAN,
     )
-
-
-def _velocities(gnss: Gnss) -> tuple[Array, Array]:
-    """Times and horizontal velocities, of positions where none is measured."""
-    known = np.isfinite(gnss.lla).all(axis=1)
-    time, lla, v_n = gnss.time[known], gnss.lla[known], gnss.v_n[known]
-    if len(time) < 2:
-        return np.zeros(1), np.zeros((1, 2))
-    v = horizontal_velocity(time, lla, v_n)
-    heard = np.isfinite(v).all(axis=1)
-    return (time[heard], v[heard]) if heard.any() else (np.zeros(1), np.zeros((1, 2)))
-
-
-def _cross(a: Array, b: Array) -> Array:
-    """How far b lies to the right of a, times both lengths."""
-    return np.asarray(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])
-
-
-def _mean(imu: Imu, gained: Array, at: Array, half: float) -> Array:
-    """Mean rate of what was gained in the samples around some times."""
-    sums = np.concatenate([np.zeros((1, 4)), np.cumsum(np.column_stack([gained, imu.dt]), axis=0)])
-    a, b = np.searchsorted(imu.time, at - half), np.searchsorted(imu.time, at + half)
-    parts = sums[b] - sums[a]
-    return np.asarray(parts[:, :3] / np.maximum(parts[:, 3:], 1e-9))
 
 
 def vehicle_axes(told: Felt) -> tuple[Array, float]:

@@ -4,10 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from typing import NamedTuple
 
 import numpy as np
 
 from gapless.alignment.clock import Offset
+from gapless.alignment.turns import far_off, turns
+from gapless.errors import RecordingError
+from gapless.recording import Gnss, Imu
 from gapless.solution import Decision
 
 VAGUE = 0.1
@@ -15,25 +19,76 @@ VAGUE = 0.1
 ONE_CLOCK = 0.1
 """By how much the offsets of a receiver's positions and velocities differ, as a standard deviation [s]:
 it has one clock, but may report means."""
+MOST = 10.0
+"""No receiver is later than this [s]; stamps that are, are wrong."""
 OTHER = {"position": "velocity", "velocity": "position"}
 """Channels of one receiver."""
 
 
-def believed(channel: str, found: Mapping[str, Offset], given: Mapping[str, float]) -> Offset:
-    """An offset as it was found; if that is vague, weighed against the receiver's other channel, or zero.
+class Clocks(NamedTuple):
+    """What is known of clocks.
+
+    Parameters
+    ----------
+    given : mapping of str to float
+        Offsets that a user gave [s].
+    base : float
+        Offset of the receiver by turns, to half a second, where it is more than one [s].
+    found : mapping of str to Offset
+    """
+
+    given: Mapping[str, float]
+    base: float
+    found: Mapping[str, Offset]
+
+
+def base_offset(imu: Imu, gnss: Gnss, given: Mapping[str, float]) -> float:
+    """Offset of a receiver that is off by more than a second, from which a finer one is looked for.
+
+    Parameters
+    ----------
+    imu : Imu
+    gnss : Gnss
+    given : mapping of str to float
+        Where a user gave one, nothing is looked for.
+
+    Returns
+    -------
+    float
+        [s]
+
+    Raises
+    ------
+    RecordingError
+        If its stamps are further off than any delay is.
+    """
+    if OTHER.keys() & given.keys():
+        return 0.0
+    base = far_off(turns(imu, gnss))
+    if abs(base) > MOST:
+        way, cure = ("later", "subtract") if base < 0.0 else ("earlier", "add")
+        leap = " (GPS time is 18 s ahead of UTC)" if abs(abs(base) - 18.0) < 1.0 else ""
+        raise RecordingError(
+            f"GNSS stamps are {abs(base):.1f} s {way} than the IMU's, by the turns that both tell of; "
+            f"put both on one clock: {cure} that much{leap}"
+        )
+    return base
+
+
+def believed(channel: str, clocks: Clocks) -> Offset:
+    """An offset as it was found; if that is vague, weighed against the receiver's other channel, or the base.
 
     Parameters
     ----------
     channel : str
-        One that is in `found`.
-    found : mapping of str to Offset
-    given : mapping of str to float
-        Offsets that a user gave [s].
+        One that was looked for.
+    clocks : Clocks
 
     Returns
     -------
     Offset
     """
+    given, base, found = clocks
     own, other = found[channel], OTHER.get(channel, "")
     if own.sd < VAGUE:
         return own
@@ -42,23 +97,19 @@ def believed(channel: str, found: Mapping[str, Offset], given: Mapping[str, floa
     elif other in found and found[other].sd < VAGUE:
         clock = found[other].value
     else:
-        return own._replace(value=0.0)
+        return own._replace(value=base if channel in OTHER else 0.0)
     share = ONE_CLOCK**2 / (ONE_CLOCK**2 + own.sd**2)
     value = clock + share * (own.value - clock) if share else clock
     return own._replace(value=value, sd=ONE_CLOCK * math.sqrt(1.0 - share))
 
 
-def clock_decision(
-    channel: str, found: Mapping[str, Offset], given: Mapping[str, float], span: float
-) -> Decision:
+def clock_decision(channel: str, clocks: Clocks, span: float) -> Decision:
     """What was decided of a channel's clock, and why.
 
     Parameters
     ----------
     channel : str
-    found : mapping of str to Offset
-    given : mapping of str to float
-        [s]
+    clocks : Clocks
     span : float
         Seconds that were looked at.
 
@@ -66,15 +117,17 @@ def clock_decision(
     -------
     Decision
     """
-    name = f"clock offset, {channel}"
-    if channel in given:
-        return Decision(name, given[channel], "s", "user", "given in the configuration")
-    taken = believed(channel, found, given) if channel in found else None
+    name, base = f"clock offset, {channel}", clocks.base if channel in OTHER else 0.0
+    if channel in clocks.given:
+        return Decision(name, clocks.given[channel], "s", "user", "given in the configuration")
+    taken = believed(channel, clocks) if channel in clocks.found else None
+    turned = f"{base:+.2f} s by the turns that both tell of; " if base else ""
     if taken is None or not np.isfinite(taken.sd):
-        return Decision(name, 0.0, "s", "default", "the motion says too little; stamps taken as logged")
-    own = found[channel]
+        source, what = ("data", "no finer") if base else ("default", "stamps taken as logged")
+        return Decision(name, base, "s", source, f"{turned}the motion says too little; {what}")
+    own = clocks.found[channel]
     evidence = (
-        f"{own.epochs} readings against the inertial motion of {span:.0f} s; "
+        f"{turned}{own.epochs} readings against the inertial motion of {span:.0f} s; "
         f"misfit {100.0 * (1.0 - 1.0 / own.gain):.1f} % less than without"
     )
     if own.sd >= VAGUE:

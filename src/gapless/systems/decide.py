@@ -16,7 +16,7 @@ from gapless.recording import Array, Recording, Trajectory
 from gapless.sensors.vibration import gyro_density
 from gapless.solution import Decision
 from gapless.systems.build import budget, lever_arm, settings, stamps
-from gapless.systems.clocks import believed, clock_decision
+from gapless.systems.clocks import Clocks, base_offset, believed, clock_decision
 from gapless.systems.learning import BridgeUse
 from gapless.systems.recipe import Adaptation, RehearsalUse, System
 from gapless.units import DEG
@@ -105,7 +105,8 @@ class _FirstPass:
     def __init__(self, past: Recording, system: System) -> None:
         self.past, self.system = past, system
         self.given = {c: v for c in CHANNELS if (v := getattr(system.clock, c)) != "auto"}
-        self.offsets = dict.fromkeys(CHANNELS, 0.0) | self.given
+        self.base = base_offset(past.imu, past.gnss, self.given)
+        self.offsets = {"position": self.base, "velocity": self.base, "odometer": 0.0} | self.given
         self.found: dict[str, Offset] = {}
         self.mounting = _given_mounting(system)
         self.span = 0.0
@@ -149,24 +150,28 @@ class _FirstPass:
         settled, before = True, dict(self.offsets)
         self.found = self._estimates(path, blocks)
         for channel, estimate in self.found.items():
-            self.offsets[channel] = believed(channel, self.found, self.given).value
+            self.offsets[channel] = believed(channel, self._clocks).value
             settled &= abs(self.offsets[channel] - before[channel]) < max(SETTLED, 2.0 * estimate.sd)
         return settled
 
+    @property
+    def _clocks(self) -> Clocks:
+        return Clocks(self.given, self.base, self.found)
+
     def _estimates(self, path: Trajectory, blocks: dict[str, Array]) -> dict[str, Offset]:
-        gnss, odometer = self.past.gnss, self.past.odometer
-        found = {}
+        gnss, odometer, base = self.past.gnss, self.past.odometer, self.base
+        time, found = gnss.time + base, {}
         fixed = np.isfinite(gnss.lla).all(axis=1)
         heard = np.isfinite(gnss.v_n).all(axis=1)
         if "velocity" not in self.given and heard.any():
             curve = velocity_curve(path, blocks["accel_bias"], self.past.imu)
-            found["velocity"] = offset(curve, gnss.time[heard], gnss.v_n[heard, :2], 1)
+            found["velocity"] = offset(curve, time[heard], gnss.v_n[heard, :2], 1).later(base)
         if "position" not in self.given and fixed.any():
             here = earth.lla_to_ned(gnss.lla[fixed], gnss.lla[fixed][0])[:, :2]
             windows = tuple(sorted({min(w, self.span) for w in WINDOWS}))
             found["position"] = offset(
-                path_curve(path), gnss.time[fixed], here, 1, windows=windows, correlation=5.0
-            )
+                path_curve(path), time[fixed], here, 1, windows=windows, correlation=5.0
+            ).later(base)
         if odometer is not None and "odometer" not in self.given:
             speed = np.hypot(path.v_n[:, 0], path.v_n[:, 1])[:, None]
             found["odometer"] = offset(Curve(path.time, speed), odometer.time, odometer.speed[:, None], 1)
@@ -188,7 +193,7 @@ class _FirstPass:
         present = {"position": True, "velocity": self.past.gnss.has_velocity}
         present["odometer"] = self.past.odometer is not None
         chosen = [c for c in CHANNELS if present[c]]
-        return [clock_decision(c, self.found, self.given, self.span) for c in chosen]
+        return [clock_decision(c, self._clocks, self.span) for c in chosen]
 
     def mounting_decisions(self) -> list[Decision]:
         """Pitch and yaw of the car's forward axis in the box."""
