@@ -56,8 +56,11 @@ def turns(imu: Imu, gnss: Gnss) -> Turns:
     -------
     Turns
     """
+    offsets, explained = np.arange(-REACH, REACH + 0.5 * _STEP, _STEP), list[float]()
+    if not len(imu):
+        return Turns(offsets, np.zeros(len(offsets)))
     drove, angle = steered(gnss, _HALF), Sums.of(imu, imu.dtheta)
-    turned, offsets, explained = drove.turned, np.arange(-REACH, REACH + 0.5 * _STEP, _STEP), []
+    turned = drove.turned
     for at in (drove.time + s for s in offsets):
         there = (at - _HALF > angle.time[0]) & (at + _HALF < angle.time[-1])
         felt = angle.at(at[there] + _HALF) - angle.at(at[there] - _HALF)

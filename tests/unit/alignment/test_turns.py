@@ -49,6 +49,7 @@ def test_beyond_reach_or_short_or_nonsense_nothing_is_found():
     assert far_off(turns(imu, late(REACH + 15.0))) == 0.0
     assert far_off(turns(imu, late(5.0).take(slice(0, 60)))) == 0.0
     assert far_off(turns(imu, late(5.0).take(slice(0, 0)))) == 0.0
+    assert far_off(turns(imu.take(slice(0, 0)), late(5.0))) == 0.0
     for _ in range(20):
         noise = replace(late(0.0), v_n=rng.normal(10.0, 3.0, (len(drive().gnss), 3)))
         assert far_off(turns(imu, noise)) == 0.0
