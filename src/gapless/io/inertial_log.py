@@ -27,6 +27,8 @@ _GRAVITY_BAND: Final = (7.0, 12.5)
 """Where the median specific force [m/s^2] of any vehicle lies, biases of 1 m/s^2 included."""
 _SAMPLES: Final = 20_000
 """Rows, evenly spread, that the units are judged by."""
+_STUCK: Final = 1000
+"""Rows without any change from which on a sensor is taken for dead."""
 _SPARE: Final = 0.2
 """Share of rows without a value beyond which a log is refused."""
 _SPARE_SPIKES: Final = 1e-3
@@ -188,10 +190,14 @@ def _check_units(log: Log, gyro: Array, accel: Array) -> None:
         what = f"the median specific force is {force:.4g} m/s^2, not about 9.8"
         if low <= float(np.median(turn)) <= high:
             log.refuse(what + ", but the gyro's norm is", "exchange the gyro and accelerometer columns")
-        for unit, factor in (("g", 9.80665), ("milli-g", 9.80665e-3)):
+        increments = 1.0 / nominal_interval(log["time"])
+        for unit, factor in (("g", 9.80665), ("milli-g", 9.80665e-3), ("increments", increments)):
             if low <= force * factor <= high:
                 log.refuse(f"{what}: it looks like {unit}", f"multiply the accelerations by {factor:g}")
         log.refuse(what, "log specific force in m/s^2, gravity included, and check the order of the columns")
+    for name, triad in (("gyros", gyro), ("accelerometers", accel)):
+        if len(triad) > _STUCK and not np.ptp(triad, axis=0).any():
+            log.refuse(f"the {name} read the same in every row", "log what they measured")
     busy = float(np.percentile(turn, 99.0))
     if busy > _BUSY_GYRO:
         log.refuse(

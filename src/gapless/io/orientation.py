@@ -1,4 +1,4 @@
-"""Do the logged axes point where they are said to? Gravity, accelerations and turns tell.
+"""Do the logged axes point where they are said to, and in their unit? Gravity, accelerations and turns tell.
 
 The mean of the specific force points up. What GNSS says of the car's accelerations, forward and to the
 right, is what the accelerometers feel in the plane below; the angle between the two is the box's. Turns of
@@ -26,6 +26,8 @@ _COHERENT: Final = 0.6
 """What is felt and what GNSS says must agree as well as this at some angle, or nothing is concluded."""
 _TURNING: Final = 0.8
 """The same for rates of turn."""
+_LEAST: Final = 0.6
+"""What gyros feel, in units of what the course turns; more than its inverse is wrong too."""
 _FAR: Final = 60.0 * DEG
 """An axis so far off is another one: half the way between two is 45 degrees."""
 
@@ -73,13 +75,9 @@ def check_orientation(log: Log, imu: Imu, gnss: Gnss, axes: Array | None) -> Non
     if len(told.turn) < _ENOUGH:
         return
     vehicle, coherence = vehicle_axes(told)
-    axis, correlation = turning_axis(told)
-    apart = _angle(float(axis @ vehicle[2]))
-    if correlation > _TURNING and apart > _FAR:
-        log.refuse(
-            f"turns are felt {apart / DEG:.0f} degrees off the vertical that the accelerometers feel",
-            "columns of gyros or accelerometers are exchanged, or have the wrong sign: check both",
-        )
+    turning = turning_axis(told)
+    if turning.correlation > _TURNING:
+        _check_gyros(log, turning, vehicle[2], imu.rate)
     if coherence > _COHERENT and _angle(0.5 * (float(np.trace(vehicle)) - 1.0)) > _FAR:
         given = "dtheta_x" in log
         said = np.eye(3) if axes is None or given else axes
@@ -89,6 +87,21 @@ def check_orientation(log: Log, imu: Imu, gnss: Gnss, axes: Array | None) -> Non
             f"x, y and z do not point {nearest_axes(said)}: by gravity and accelerations they point {found}",
             cure,
         )
+
+
+def _check_gyros(log: Log, turning: Turning, down: Array, samples: float) -> None:
+    """Whether turns are felt about the vertical, and are as large as those of the course."""
+    apart = _angle(float(turning.axis @ down))
+    if apart > _FAR:
+        log.refuse(
+            f"turns are felt {apart / DEG:.0f} degrees off the vertical that the accelerometers feel",
+            "columns of gyros or accelerometers are exchanged, or have the wrong sign: check both",
+        )
+    if not _LEAST < turning.factor < 1.0 / _LEAST:
+        cure = "check the unit, rad/s"
+        if abs(turning.factor * samples - 1.0) < 0.2:
+            cure = f"they look like increments: multiply the gyro columns by {samples:.0f}"
+        log.refuse(f"the gyros turn {turning.factor:.3g} times as far as the course of the fixes", cure)
 
 
 def _angle(cosine: float) -> float:
@@ -150,8 +163,26 @@ def vehicle_axes(told: Felt) -> tuple[Array, float]:
     return np.array([forward, np.cross(down, forward), down]), float(abs(agreed)) / max(size, 1e-9)
 
 
-def turning_axis(told: Felt) -> tuple[Array, float]:
-    """The box's axis that turns to the right go about, and how well they agree with the course.
+class Turning(NamedTuple):
+    """Turns as the gyros feel them.
+
+    Parameters
+    ----------
+    axis : ndarray, shape (3,)
+        The box's axis that turns to the right go about, of length one.
+    correlation : float
+        With the course's.
+    factor : float
+        What the gyros feel, in units of what the course turns.
+    """
+
+    axis: Array
+    correlation: float
+    factor: float
+
+
+def turning_axis(told: Felt) -> Turning:
+    """The axis that turns go about, and how well they agree with the course.
 
     Parameters
     ----------
@@ -159,13 +190,12 @@ def turning_axis(told: Felt) -> tuple[Array, float]:
 
     Returns
     -------
-    axis : ndarray, shape (3,)
-        Of length one.
-    correlation : float
+    Turning
     """
     rate, turn = told.rate - told.rate.mean(axis=0), told.turn - told.turn.mean()
     axis = turn @ rate
     axis = axis / max(float(np.linalg.norm(axis)), 1e-12)
     about = rate @ axis
-    size = float(np.linalg.norm(about) * np.linalg.norm(turn))
-    return axis, float(about @ turn) / max(size, 1e-12)
+    agreed, size = float(about @ turn), float(np.linalg.norm(about))
+    correlation = agreed / max(size * float(np.linalg.norm(turn)), 1e-12)
+    return Turning(axis, correlation, size**2 / max(agreed, 1e-12))  # errors are the course's

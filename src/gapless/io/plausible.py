@@ -17,6 +17,8 @@ _FAR: Final = 30.0
 """Displacement [m] from which on a pair is compared: ten times a single point's noise."""
 _ENOUGH: Final = 30
 """Pairs below which nothing is concluded."""
+_HILLY: Final = 0.5
+"""Standard deviation of heights gained in ten seconds [m] below which they say nothing."""
 _UNITS: Final = {
     3.6: "km/h",
     1 / 0.44704: "mph",
@@ -44,6 +46,8 @@ def check_velocity(log: Log, gnss: Gnss) -> None:
         If the velocity's integral is not along the displacement or not as long.
     """
     ahead, moved = _displacements(gnss)
+    _check_down(log, ahead[:, 2], moved[:, 2])
+    ahead, moved = ahead[:, :2], moved[:, :2]
     size_v, size_p = np.hypot(*ahead.T), np.hypot(*moved.T)
     if len(ahead) >= _ENOUGH and np.mean((size_v > _FAR) & (size_p < 0.03 * size_v)) > 0.2:
         log.refuse(
@@ -64,6 +68,17 @@ def check_velocity(log: Log, gnss: Gnss) -> None:
     if not 0.7 < ratio < 1.4:
         log.refuse(
             f"velocity is {ratio:.3g} times what the positions show", f"{_unit(ratio)}: log deg and m/s"
+        )
+
+
+def _check_down(log: Log, sunk: Array, lower: Array) -> None:
+    """Whether heights fall where the velocity says so; on flat roads neither tells."""
+    if len(sunk) < _ENOUGH or min(np.std(sunk), np.std(lower)) < _HILLY:
+        return
+    agreed = float(np.corrcoef(sunk, lower)[0, 1])
+    if agreed < -0.7:
+        log.refuse(
+            f"v_down points up (its correlation with falling heights is {agreed:.2f})", "change its sign"
         )
 
 
@@ -119,11 +134,11 @@ def _integral(t: Array, rate: Array) -> Array:
 
 
 def _displacements(gnss: Gnss) -> tuple[Array, Array]:
-    """North and east [m] over about ten seconds, by velocity and by position."""
+    """North, east and down [m] over about ten seconds, by velocity and by position."""
     known = np.isfinite(gnss.lla).all(axis=1) & np.isfinite(gnss.v_n).all(axis=1)
-    t, lla, v = gnss.time[known], gnss.lla[known], gnss.v_n[known, :2]
+    t, lla, v = gnss.time[known], gnss.lla[known], gnss.v_n[known]
     if len(t) > 5:  # spikes of single fixes are the navigator's to judge
         v[2:-2] = np.median(np.lib.stride_tricks.sliding_window_view(v.copy(), 5, axis=0), axis=-1)
     first, last = _apart(t)
     path = _integral(t, v)
-    return path[last] - path[first], offset_ned(lla[last], lla[first])[:, :2]
+    return path[last] - path[first], offset_ned(lla[last], lla[first])

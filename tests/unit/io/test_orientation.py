@@ -102,6 +102,16 @@ def test_triads_that_contradict_each_other_are_refused(triad, matrix):
     assert "exchanged, or have the wrong sign" in line
 
 
+@pytest.mark.parametrize(
+    ("factor", "cure"), [(0.02, "increments: multiply the gyro columns by 50"), (0.5, "unit"), (2.0, "unit")]
+)
+def test_gyros_in_another_unit_are_refused(factor, cure):
+    imu = drive().imu
+    line = refusal(replace(imu, dtheta=factor * imu.dtheta), drive().gnss)
+    assert f"the gyros turn {factor:.1g}" in line
+    assert cure in line
+
+
 def test_increments_are_not_told_of_a_key_that_is_not_theirs():
     line = refusal(turned(axes_matrix("right-forward-up").T), drive().gnss, log=INCREMENTS)
     assert line.endswith("turn them to forward-right-down")
@@ -133,4 +143,6 @@ def test_spikes_of_the_receiver_refuse_nothing():
 def test_agreement_of_a_sound_log():
     told = felt(drive().imu, drive().gnss)
     assert vehicle_axes(told)[1] > 0.8  # seven real cars: 0.85 to 0.98
-    assert turning_axis(told)[1] > 0.9  # 0.983 to 0.999
+    turning = turning_axis(told)
+    assert turning.correlation > 0.9  # 0.983 to 0.999
+    assert turning.factor == pytest.approx(1.0, abs=0.05)  # seven real cars: 0.998 to 1.011

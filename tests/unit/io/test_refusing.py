@@ -25,6 +25,21 @@ def scaled(sensor, names, factor):
     return change
 
 
+def held(sensor, names):
+    def change(drive):
+        for name in names:
+            drive[sensor][name] = np.full_like(drive[sensor][name], drive[sensor][name].mean())
+
+    return change
+
+
+def hills(drive):
+    """Up and down by five metres, and a velocity that calls up what is down."""
+    phase = 0.2 * drive["gnss"]["time"]
+    drive["gnss"]["height"] = 500.0 + 5.0 * np.sin(phase)
+    drive["gnss"]["v_down"] = 0.2 * 5.0 * np.cos(phase)
+
+
 def exchanged(sensor, pairs):
     def change(drive):
         for a, b in pairs:
@@ -87,6 +102,13 @@ CASES = {
     "text": (words("imu", "gyro_z", 41, "n/a?"), "imu.csv:43: gyro_z is 'n/a?', not a number"),
     "text gnss": (words("gnss", "lat", 3, "48°"), "gnss.csv:5: lat is"),
     "g": (scaled("imu", ACCEL, 1 / 9.80665), "looks like g; multiply the accelerations by 9.80665"),
+    "increments": (scaled("imu", ACCEL, 0.01), "it looks like increments; multiply the accelerations by 100"),
+    "dead gyros": (scaled("imu", GYRO, 0.0), "the gyros read the same in every row"),
+    "dead accelerometers": (held("imu", ACCEL), "the accelerometers read the same in every row"),
+    "up for down": (
+        hills,
+        "v_down points up (its correlation with falling heights is -1.00); change its sign",
+    ),
     "milli-g": (scaled("imu", ACCEL, 1000 / 9.80665), "impossible values in 10000 rows"),
     "no gravity": (put("imu", "accel_z", slice(None), 0.0), "gravity included"),
     "deg/s": (lambda d: scaled("imu", GYRO, 57.3 * 4)(d), "look like deg/s; multiply the gyro"),
