@@ -7,9 +7,8 @@ from typing import Any, Self
 
 import numpy as np
 
-from gapless import earth
-from gapless.alignment.coarse import Start
 from gapless.assimilate import assimilate
+from gapless.begin import begin
 from gapless.bridges.base import Bridge
 from gapless.events import EPS, Event, ImuBlock, Motion, Reading
 from gapless.filters.consider import Wander
@@ -23,7 +22,6 @@ from gapless.measurements.base import Observation
 from gapless.settings import Settings
 from gapless.state import Past, State
 from gapless.tape import Tape
-from gapless.units import DEG
 
 __all__ = ["Navigator", "Settings"]
 
@@ -91,7 +89,7 @@ class Navigator:
     @property
     def aided(self) -> bool:
         """Whether GNSS speaks."""
-        return self.aligned and self._source() == "gnss"
+        return self.aligned and self._state.source == "gnss"
 
     def adopt(self, manner: Manner) -> None:
         """Go on in another manner; what was estimated and learned stays.
@@ -200,7 +198,7 @@ class Navigator:
         if state.aligner is not None:
             start = state.aligner.hear(reading, state.clock)
             if start is not None:
-                self._begin(start)
+                begin(start, state, self.settings, self.journal, self.tape)
             if start is not None or not state.aligned:
                 return
         observation = self.settings.sensors[reading.channel].observe(state.belief, reading)
@@ -307,53 +305,13 @@ class Navigator:
         state, often = self._state, self.settings.row
         if state.clock >= state.next_row - EPS:
             state.next_row = max(state.next_row + often, state.clock + 0.5 * often)
-            source, shared = self._source(), state.wander.response
+            source, shared = state.source, state.wander.response
             if source != "gnss" and state.manner.scale != 1.0:
                 shared = shared + (state.manner.scale - 1.0) * state.belief.P[:3, :3]
             row = state.clock, state.belief, shared, source
             self.journal.row(*row)
             if self.tape is not None:
                 self.tape.row(*row)
-
-    def _source(self) -> str:
-        heard, now = self._state.heard, self._state.clock
-        if now - max(heard.get("position", -math.inf), heard.get("velocity", -math.inf)) < 1.6:
-            return "gnss"
-        if now - heard.get("bridge", -math.inf) < 1.6:
-            return "bridge"
-        if any(now - heard.get(name, -math.inf) < 1.0 for name in (*self._state.constraints, "odometer")):
-            return "constraints"
-        return "ins"
-
-    # --- belief ---------------------------------------------------------------------------------
-
-    def _begin(self, start: Start) -> None:
-        """Take over an initial state; blocks that an earlier alignment left are kept."""
-        state, s = self._state, self.settings
-        b = state.belief
-        b.x[:3], b.x[3:6], b.x[6:10] = start.lla, start.v_n, start.q_nb
-        first = not state.aligned
-        if first:
-            for name, value in s.initial.items():
-                b.block(name)[:] = value
-            for name in s.layout.blocks:
-                b.set_sd(name, s.initial_sd.get(name, 0.0))
-            prior = np.asarray(s.initial_sd["gyro_bias"])
-            # the mean rate of a standstill holds the earth's: no news to a gyro that is known better
-            if start.gyro_bias is not None and float(prior.max()) > 2.0 * earth.RATE:
-                b.block("gyro_bias")[:] = start.gyro_bias
-                b.set_sd("gyro_bias", np.minimum(prior, 0.1 * DEG))
-        b.set_sd("position", 2.0 * start.sd_position + 1.0)
-        b.set_sd("velocity", start.sd_velocity + 0.5)
-        b.set_sd("attitude", np.array([1.0, 1.0, 0.0]) * s.initial_sd["attitude"])
-        b.course_heading(start.sd_heading)
-        b.memory[:] = 0.0
-        b.memory[at.TIME] = state.clock
-        if self.tape is not None:
-            self.tape.forgot(everything=first, course=True)
-        state.aligner, state.aligned = None, True
-        state.next_row = max(state.next_row, state.clock)
-        self.journal.align(state.clock, start.evidence)
 
     def _update(self, channel: str, time: float, o: Observation) -> bool:
         return assimilate(self._state, self.settings, channel, time, o, self.journal, self.tape)

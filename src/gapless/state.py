@@ -17,6 +17,8 @@ from gapless.manner import Manner
 from gapless.measurements.base import Constraint
 from gapless.recording import Array
 
+LASTS: Final = 1.6
+"""A fix or a bridge's word holds for so long [s]: a second, and what a receiver at 1 Hz may be late."""
 REACH: Final = 0.5
 """So much longer than `lateness` is the last part of a long block [s]."""
 
@@ -71,6 +73,18 @@ class State:
     next_row: float = -math.inf
     aligned: bool = False
     fade: float = 1.0
+
+    @property
+    def source(self) -> str:
+        """What holds the navigation now: "gnss", "bridge", "constraints" or "ins"."""
+        heard, now = self.heard, self.clock
+        if now - max(heard.get("position", -math.inf), heard.get("velocity", -math.inf)) < LASTS:
+            return "gnss"
+        if now - heard.get("bridge", -math.inf) < LASTS:
+            return "bridge"
+        if any(now - heard.get(name, -math.inf) < 1.0 for name in (*self.constraints, "odometer")):
+            return "constraints"
+        return "ins"
 
     def copy(self) -> State:
         """An independent copy.

@@ -1,0 +1,58 @@
+"""The navigator takes over an initial state, the first one or one after the IMU was silent."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from gapless import earth
+from gapless.alignment.coarse import Start
+from gapless.inertial import propagate as at
+from gapless.journal import Journal
+from gapless.settings import Settings
+from gapless.state import State
+from gapless.tape import Tape
+from gapless.units import DEG
+
+
+def begin(start: Start, state: State, settings: Settings, journal: Journal, tape: Tape | None) -> None:
+    """Go on from a start; blocks that an earlier alignment left are kept.
+
+    Parameters
+    ----------
+    start : Start
+    state : State
+        Changed in place.
+    settings : Settings
+    journal : Journal
+    tape : Tape, optional
+    """
+    b, sd = state.belief, settings.initial_sd
+    b.x[:3], b.x[3:6], b.x[6:10] = start.lla, start.v_n, start.q_nb
+    first = not state.aligned
+    if first:
+        _first(start, state, settings)
+    b.set_sd("position", 2.0 * start.sd_position + 1.0)
+    b.set_sd("velocity", start.sd_velocity + 0.5)
+    b.set_sd("attitude", np.array([1.0, 1.0, 0.0]) * sd["attitude"])
+    b.course_heading(start.sd_heading)
+    b.memory[:] = 0.0
+    b.memory[at.TIME] = state.clock
+    if tape is not None:
+        tape.forgot(everything=first, course=True)
+    state.aligner, state.aligned = None, True
+    state.next_row = max(state.next_row, state.clock)
+    journal.align(state.clock, start.evidence)
+
+
+def _first(start: Start, state: State, settings: Settings) -> None:
+    """What is constant, as far as it is known before anything was seen."""
+    b, sd = state.belief, settings.initial_sd
+    for name, value in settings.initial.items():
+        b.block(name)[:] = value
+    for name in settings.layout.blocks:
+        b.set_sd(name, sd.get(name, 0.0))
+    prior = np.asarray(sd["gyro_bias"])
+    # the mean rate of a standstill holds the earth's: no news to a gyro that is known better
+    if start.gyro_bias is not None and float(prior.max()) > 2.0 * earth.RATE:
+        b.block("gyro_bias")[:] = start.gyro_bias
+        b.set_sd("gyro_bias", np.minimum(prior, 0.1 * DEG))
