@@ -56,6 +56,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Final
 
+from gapless.version import __version__ as __version__
+
 if TYPE_CHECKING:
     from gapless.errors import AlignmentError, ConfigError, GaplessError, RecordingError
     from gapless.evaluation import score
@@ -73,7 +75,6 @@ if TYPE_CHECKING:
     from gapless.systems.smooth import smooth
     from gapless.systems.vehicle import vehicle_attitude
 
-__version__ = "0.1.0"
 
 __all__ = [
     "AlignmentError",

@@ -8,7 +8,6 @@ from typing import Any
 
 import click
 
-from gapless import __version__
 from gapless.cli.bench import bench
 from gapless.cli.convert import convert
 from gapless.cli.fuse import fuse
@@ -19,6 +18,7 @@ from gapless.cli.simulate import simulate
 from gapless.cli.sweep import sweep
 from gapless.cli.systems import systems
 from gapless.errors import GaplessError
+from gapless.version import __version__
 
 REFUSED = 2
 """Exit code where the input, the options or the disk cannot serve."""

@@ -11,11 +11,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from gapless import __version__
 from gapless.laboratory.bench import Results
 from gapless.laboratory.render import as_latex, as_markdown, as_text
 from gapless.laboratory.rows import Block, Row
 from gapless.laboratory.tables import tables
+from gapless.version import __version__
 
 if TYPE_CHECKING:
     import pyarrow as pa

@@ -9,13 +9,13 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from gapless import __version__
 from gapless.laboratory.render import as_markdown, as_text
 from gapless.papers.compare import mean, rankings, ratios
 from gapless.papers.experiment import Reproduction, Results
 from gapless.papers.page import page, readme
 from gapless.papers.tables import tables
 from gapless.reports.numbers import plain
+from gapless.version import __version__
 
 Writers = dict[str, Callable[[Path], object]]
 """By file name: writes the file at a path."""

@@ -10,7 +10,7 @@ from importlib.resources import files
 from string import Template
 from typing import Any, NamedTuple
 
-from gapless import __version__
+from gapless.version import __version__
 
 Tile = tuple[str, str, str]
 """A headline figure: title, value, note."""

@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy as np
 
-from gapless import __version__
 from gapless.evaluation import Scores, consistency
 from gapless.exhibits import Candidate, Heard, Rehearsals, WheelsHeard
 from gapless.motion import horizontal_velocity, motion
@@ -18,6 +17,7 @@ from gapless.reports.numbers import known, measured, plain
 from gapless.reports.quantities import state
 from gapless.solution import Decision, Innovations, Solution, observability
 from gapless.units import DEG
+from gapless.version import __version__
 
 _ANGLES = ("roll_rmse", "pitch_rmse", "heading_rmse", "heading_max", "heading_end")
 

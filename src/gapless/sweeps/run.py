@@ -10,10 +10,10 @@ from typing import Any
 import msgspec
 from msgspec import Struct
 
-from gapless import __version__
 from gapless.sweeps.sources import Logged, Simulated
 from gapless.systems.adjust import changed
 from gapless.systems.recipe import System
+from gapless.version import __version__
 
 
 @cache
