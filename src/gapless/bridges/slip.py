@@ -76,8 +76,6 @@ class Hold(NamedTuple):
         By how much wheels turn faster than the car, if they slip, as a share of the speed.
     slips : float
         Probability that they do.
-    windows : float
-        Readings taken from wheels that slipped: the sum of the probabilities.
     """
 
     time: float
@@ -86,7 +84,6 @@ class Hold(NamedTuple):
     slipping: Gauss
     size: Gauss = NEW
     slips: float = OFTEN
-    windows: float = 0.0
 
     @property
     def rolls(self) -> float:
@@ -94,7 +91,7 @@ class Hold(NamedTuple):
         return 1.0 - self.slips
 
     @classmethod
-    def begin(cls, time: float, variance: float, drift: float, windows: float = 0.0) -> Self:
+    def begin(cls, time: float, variance: float, drift: float) -> Self:
         """Nothing read yet.
 
         Parameters
@@ -105,15 +102,13 @@ class Hold(NamedTuple):
             Of the filter's speed [m^2/s^2].
         drift : float
             [m/s^2]
-        windows : float
-            Of silences before.
 
         Returns
         -------
         Hold
         """
         sure = Gauss(0.0, variance)
-        return cls(time, drift, sure, sure, windows=windows)
+        return cls(time, drift, sure, sure)
 
     def after(self, time: float, seen: float, variance: float, speed: float) -> Self:
         """What is believed after another reading.
@@ -157,7 +152,6 @@ class Hold(NamedTuple):
             slipping=roll.or_(slip, lasts),
             size=fresh.or_(size.given(seen - slip.mean, variance, speed), lasts),
             slips=slips,
-            windows=self.windows + slips,
         )
 
 

@@ -160,8 +160,8 @@ class Wheels:
         around = shown.circumference
         size = f"{around:.2f} m in circumference" if around else "no comb stands out"
         said = f"{len(self.readings)} speeds read in silence, {self.refused} spectra that said too little"
-        if self.hold is not None:
-            said += f"; slip noticed in {round(self.hold.windows)}"
+        slipped = sum(one.slips > 0.5 for one in self.readings)
+        said += f"; slip noticed in {slipped}"
         return (Decision("wheels heard", round(shown.spectra), "spectra", "data", f"{size}; {said}"),)
 
     def exhibit(self) -> WheelsHeard | None:
@@ -237,9 +237,8 @@ class Wheels:
         """The inertial course through this silence."""
         v, corrected = belief.estimate()[3:6], belief.trail.corrected
         if self.course is None or self.course.begun < self.fixed:
-            before = self.hold.windows if self.hold else 0.0
             self.course = Course(time, corrected, time)
-            self.hold = Hold.begin(time - self.patience, speed_sd(belief) ** 2, self.drift.rate, before)
+            self.hold = Hold.begin(time - self.patience, speed_sd(belief) ** 2, self.drift.rate)
         self.course = self.course.to(time, v / np.linalg.norm(v), corrected)
 
     def _doubted(self, time: float, found: Peak, speed: float) -> tuple[float, float]:

@@ -59,7 +59,7 @@ def text(summary: Mapping[str, Any]) -> str:
 
 def _slip(slips: Array) -> str:
     """How many windows were of slipping wheels, in words."""
-    windows = round(float(slips.sum()))
+    windows = int((slips > 0.5).sum())
     if windows == 0:
         return "No slip was noticed."
     seemed = "One of them seems" if windows == 1 else f"{windows} of them seem"
