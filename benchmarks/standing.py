@@ -1,6 +1,6 @@
 """How often a car that stands is taken for one that drives: by its comb alone, and with how loud it is.
 
-    python benchmarks/standing.py RECORDING...
+    python benchmarks/standing.py [RECORDING ...]
 
 The wheels are learned on the whole recording. Then every window in which its receiver shows no speed is
 heard by a filter that takes the car to be doing something else: how many of them give a speed, without the
@@ -15,6 +15,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+from outages import recordings
 
 from gapless.bridges.combs import Combs
 from gapless.bridges.loudness import SILENT
@@ -54,7 +55,7 @@ def heard(log: Recording, speed: float) -> list[Spectrum]:
 def main() -> None:
     """Print a line for each recording and speed."""
     print(f"{'':16}{'believed, m/s':>16}{'windows':>9}{'comb alone':>12}{'with loudness':>15}")
-    for source in stored([Path(name) for name in sys.argv[1:]]):
+    for source in stored(recordings([Path(name) for name in sys.argv[1:]])):
         log = source.open()
         solution = fuse(log, named("wheels"))
         combs, trust = Combs.of(solution.learned[0]), Wheels({}).trust
