@@ -9,6 +9,7 @@ from cars import OUTAGES, car, deaf, driven, ratio, said, worst
 from gapless.bridges.combs import Combs
 from gapless.bridges.orders import WINDOW
 from gapless.bridges.wheels import TAUGHT, Wheels
+from gapless.exhibits import Heard
 from gapless.feed import events
 from gapless.scenarios import withhold
 from gapless.sensors.grades import grade
@@ -32,7 +33,7 @@ def listened(log):
     for event in events(open_sky, {}):
         navigator.step(event)
     (bridge,) = navigator.bridges
-    time, speed, sd, _ = np.array(bridge.readings).reshape(-1, 4).T
+    time, speed, sd, *_ = np.array(bridge.readings).reshape(-1, len(Heard._fields)).T
     truth = log.reference
     true = np.interp(time, truth.time, np.linalg.norm(truth.v_n, axis=1))
     return speed - true, true, sd, bridge.refused
