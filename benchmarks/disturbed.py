@@ -57,9 +57,8 @@ def halved(log: Recording) -> Recording:
     if imu.rate < 70.0:
         return log
     n = len(imu) // 2 * 2
-    return replace(
-        log, imu=Imu(imu.time[1:n:2], *(x[:n:2] + x[1:n:2] for x in (imu.dt, imu.dtheta, imu.dvel)))
-    )
+    pairs = (x[:n:2] + x[1:n:2] for x in (imu.dt, imu.dtheta, imu.dvel))
+    return replace(log, imu=Imu(imu.time[1:n:2], *pairs))
 
 
 def thinned(log: Recording) -> Recording:
@@ -122,7 +121,7 @@ def main() -> None:
     given = parser.parse_args()
     sources, systems = stored(recordings(given.recordings)), given.systems.split(",")
     jobs = [Job(source, c, s) for c in CHANGES for s in systems for source in sources]
-    found = iter(in_order(errors, jobs, 2))
+    found = in_order(errors, jobs, 2)
     print(f"{'':40}{'system':14}{'n':>4}{'mean':>7}{'median':>8}{'P90':>7}{'worst':>7}{'inside':>8}   m")
     for change in CHANGES:
         for system in systems:

@@ -75,7 +75,6 @@ if TYPE_CHECKING:
     from gapless.systems.smooth import smooth
     from gapless.systems.vehicle import vehicle_attitude
 
-
 __all__ = [
     "AlignmentError",
     "ConfigError",

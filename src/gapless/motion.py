@@ -9,7 +9,7 @@ import numpy as np
 
 from gapless import earth
 from gapless.attitude import wrap
-from gapless.recording import Array, Columns, Gnss, Imu, Recording
+from gapless.recording import Array, Columns, Imu, Recording
 
 FIRST_MOTION_SPEED: Final = 5.0
 """Speed that counts as driving [m/s]."""
@@ -17,8 +17,6 @@ FIRST_MOTION_TIME: Final = 3.0
 """How long the speed has to stay above it [s]."""
 COURSE_SPEED: Final = 1.0
 """Below this speed [m/s] the last course is kept."""
-STEERED_SPEED: Final = 3.0
-"""Slower than this, a turn of the course says little [m/s]."""
 _HALF_WINDOW: Final = 1.0
 """Positions this far before and after [s] give the velocity where none is measured."""
 
@@ -155,70 +153,6 @@ def motion(time: Array, velocity: Array) -> Motion:
     return Motion(time, speed, course, np.concatenate([[0.0], np.cumsum(steps)])[: len(time)])
 
 
-class Steered(NamedTuple):
-    """Seconds in which a car drove, and its velocity around each.
-
-    Parameters
-    ----------
-    time : ndarray, shape (n,)
-        [s], a second apart or more.
-    before, now, after : ndarray, shape (n, 2)
-        Horizontal velocity [m/s] half a window earlier, then, and half a window later.
-    """
-
-    time: Array
-    before: Array
-    now: Array
-    after: Array
-
-    @property
-    def turned(self) -> Array:
-        """How far the course turned to the right within the window [rad]."""
-        a, b = self.before, self.after
-        return np.asarray(np.arctan2(rightward(a, b), (a * b).sum(axis=1)))
-
-
-def steered(gnss: Gnss, half: float) -> Steered:
-    """Velocities around the seconds in which a car drove, as GNSS tells them.
-
-    Parameters
-    ----------
-    gnss : Gnss
-    half : float
-        Half the window [s].
-
-    Returns
-    -------
-    Steered
-    """
-    gnss = gnss.take(np.isfinite(gnss.lla).all(axis=1))
-    v = horizontal_velocity(gnss.time, gnss.lla, gnss.v_n) if len(gnss) > 1 else np.zeros((len(gnss), 2))
-    heard = np.isfinite(v).all(axis=1)
-    time, v = gnss.time[heard], v[heard]
-    if len(time) < 2:
-        return Steered(np.zeros(0), *np.zeros((3, 0, 2)))
-    at = np.arange(time[0] + half, time[-1] - half, 1.0)
-    three = [np.column_stack([np.interp(at + s, time, c) for c in v.T]) for s in (-half, 0.0, half)]
-    near = np.searchsorted(time, at + 1.5 * half) - np.searchsorted(time, at - 1.5 * half) >= 3
-    drove = near & (np.min([np.hypot(*u.T) for u in three], axis=0) > STEERED_SPEED)
-    return Steered(at[drove], *(u[drove] for u in three))
-
-
-def rightward(a: Array, b: Array) -> Array:
-    """How far b lies to the right of a, times both lengths.
-
-    Parameters
-    ----------
-    a, b : ndarray, shape (n, 2)
-        North, east.
-
-    Returns
-    -------
-    ndarray, shape (n,)
-    """
-    return np.asarray(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])
-
-
 class Sums(NamedTuple):
     """What increments of an IMU add up to.
 
@@ -226,7 +160,7 @@ class Sums(NamedTuple):
     ----------
     time : ndarray, shape (n + 1,)
         [s]
-    value : ndarray, shape (n + 1, 3)
+    value : ndarray, shape (n + 1, m)
         Zero at first.
     """
 
@@ -240,14 +174,14 @@ class Sums(NamedTuple):
         Parameters
         ----------
         imu : Imu
-        increments : ndarray, shape (n, 3)
+        increments : ndarray, shape (n, m)
 
         Returns
         -------
         Sums
         """
         time = np.concatenate([[imu.time[0] - imu.dt[0]], imu.time])
-        return cls(time, np.concatenate([np.zeros((1, 3)), np.cumsum(increments, axis=0)]))
+        return cls(time, np.concatenate([np.zeros_like(increments[:1]), np.cumsum(increments, axis=0)]))
 
     def at(self, time: Array) -> Array:
         """Sums up to some times.
@@ -259,9 +193,25 @@ class Sums(NamedTuple):
 
         Returns
         -------
-        ndarray, shape (k, 3)
+        ndarray, shape (k, m)
         """
         return np.column_stack([np.interp(time, self.time, column) for column in self.value.T])
+
+    def around(self, time: Array, half: float) -> Array:
+        """What was added within windows around some times.
+
+        Parameters
+        ----------
+        time : ndarray, shape (k,)
+            [s]
+        half : float
+            Half the window [s].
+
+        Returns
+        -------
+        ndarray, shape (k, m)
+        """
+        return np.asarray(self.at(time + half) - self.at(time - half))
 
 
 def first_motion(recording: Recording) -> float:

@@ -191,7 +191,7 @@ def velocity_curve(path: Trajectory, accel_bias: Array, imu: Imu) -> Curve:
         North, east [m/s] at the path's times; no correction of a filter is in it.
     """
     felt = Sums.of(imu, imu.dvel).at(path.time)
-    spent = Sums.of(imu, np.column_stack([imu.dt] * 3)).at(path.time)
+    spent = Sums.of(imu, imu.dt[:, None]).at(path.time)
     step = np.diff(felt, axis=0) - accel_bias[:-1] * np.diff(spent, axis=0)
     c = attitude.to_matrix(attitude.from_euler(path.euler))
     turned = 0.5 * np.einsum("kij,kj->ki", c[:-1] + c[1:], step)[:, :2]

@@ -11,8 +11,9 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from gapless.motion import Sums, steered
+from gapless.motion import Sums
 from gapless.recording import Array, Gnss, Imu
+from gapless.steering import steered
 
 REACH: Final = 30.0
 """Offsets up to this are looked for [s]: leap seconds are 18."""
@@ -63,7 +64,7 @@ def turns(imu: Imu, gnss: Gnss) -> Turns:
     turned = drove.turned
     for at in (drove.time + s for s in offsets):
         there = (at - _HALF > angle.time[0]) & (at + _HALF < angle.time[-1])
-        felt = angle.at(at[there] + _HALF) - angle.at(at[there] - _HALF)
+        felt = angle.around(at[there], _HALF)
         explained.append(_explained(felt, turned[there]) if there.sum() >= _ENOUGH else 0.0)
     return Turns(offsets, np.array(explained))
 

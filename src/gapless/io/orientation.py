@@ -14,8 +14,9 @@ import numpy as np
 
 from gapless.io.axes import nearest_axes
 from gapless.io.log import Log
-from gapless.motion import Steered, Sums, rightward, steered
+from gapless.motion import Sums
 from gapless.recording import Array, Gnss, Imu
+from gapless.steering import Steered, rightward, steered
 from gapless.units import DEG
 
 _SPAN: Final = 4.0
@@ -123,12 +124,10 @@ def felt(imu: Imu, gnss: Gnss) -> Felt:
     drove = steered(gnss, 0.5 * _SPAN)
     inside = (drove.time - _SPAN > imu.time[0]) & (drove.time + _SPAN < imu.time[-1])
     drove = Steered(*(column[inside] for column in drove))
-    a, b = drove.time - 0.5 * _SPAN, drove.time + 0.5 * _SPAN
-    angle, gained = Sums.of(imu, imu.dtheta), Sums.of(imu, imu.dvel)
     forward, faster = drove.now / np.hypot(*drove.now.T)[:, None], (drove.after - drove.before) / _SPAN
     return Felt(
-        (gained.at(b) - gained.at(a)) / _SPAN,
-        (angle.at(b) - angle.at(a)) / _SPAN,
+        Sums.of(imu, imu.dvel).around(drove.time, 0.5 * _SPAN) / _SPAN,
+        Sums.of(imu, imu.dtheta).around(drove.time, 0.5 * _SPAN) / _SPAN,
         np.column_stack([(forward * faster).sum(axis=1), rightward(forward, faster)]),
         drove.turned / _SPAN,
     )

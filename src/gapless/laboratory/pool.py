@@ -11,7 +11,6 @@ import signal
 import threading
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
-from contextlib import contextmanager
 from multiprocessing import get_context
 from multiprocessing.connection import Connection
 from typing import Final, TypeVar
@@ -49,20 +48,13 @@ def in_order(
             yield work(job)
             tell(k + 1.0)
         return
-    with _workers(processes) as pool:
+    pool = Processes(processes)
+    try:
         futures = [pool.submit(work, job) for job in jobs]
         for k, future in enumerate(as_completed(futures)):
             future.result()  # whatever went wrong ends it all now
             tell(k + 1.0)
         yield from (future.result() for future in futures)
-
-
-@contextmanager
-def _workers(count: int) -> Iterator[ProcessPoolExecutor]:
-    """Processes that end with the block, whatever they are doing then."""
-    pool = Processes(count)
-    try:
-        yield pool
     finally:
         pool.dismiss()
 

@@ -99,8 +99,7 @@ def believed(channel: str, clocks: Clocks) -> Offset:
     else:
         return own._replace(value=base if channel in OTHER else 0.0)
     share = ONE_CLOCK**2 / (ONE_CLOCK**2 + own.sd**2)
-    value = clock + share * (own.value - clock) if share else clock
-    return own._replace(value=value, sd=ONE_CLOCK * math.sqrt(1.0 - share))
+    return own._replace(value=clock + share * (own.value - clock), sd=ONE_CLOCK * math.sqrt(1.0 - share))
 
 
 def clock_decision(channel: str, clocks: Clocks, span: float) -> Decision:
