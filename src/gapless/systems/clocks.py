@@ -11,7 +11,7 @@ import numpy as np
 from gapless.alignment.clock import Offset
 from gapless.alignment.turns import far_off, turns
 from gapless.errors import RecordingError
-from gapless.recording import Gnss, Imu
+from gapless.recording import Recording
 from gapless.solution import Decision
 
 VAGUE = 0.1
@@ -42,13 +42,12 @@ class Clocks(NamedTuple):
     found: Mapping[str, Offset]
 
 
-def base_offset(imu: Imu, gnss: Gnss, given: Mapping[str, float]) -> float:
+def base_offset(past: Recording, given: Mapping[str, float]) -> float:
     """Offset of a receiver that is off by more than a second, from which a finer one is looked for.
 
     Parameters
     ----------
-    imu : Imu
-    gnss : Gnss
+    past : Recording
     given : mapping of str to float
         Where a user gave one, nothing is looked for.
 
@@ -64,13 +63,13 @@ def base_offset(imu: Imu, gnss: Gnss, given: Mapping[str, float]) -> float:
     """
     if OTHER.keys() & given.keys():
         return 0.0
-    base = far_off(turns(imu, gnss))
+    base = far_off(turns(past.imu, past.gnss))
     if abs(base) > MOST:
         way, cure = ("later", "subtract") if base < 0.0 else ("earlier", "add")
         leap = " (GPS time is 18 s ahead of UTC)" if abs(abs(base) - 18.0) < 1.0 else ""
         raise RecordingError(
-            f"GNSS stamps are {abs(base):.1f} s {way} than the IMU's, by the turns that both tell of; "
-            f"put both on one clock: {cure} that much{leap}"
+            f"{past.name}: GNSS stamps are {abs(base):.1f} s {way} than the IMU's, by the turns that both tell "
+            f"of; put both on one clock: {cure} that much{leap}"
         )
     return base
 

@@ -105,7 +105,7 @@ class _FirstPass:
     def __init__(self, past: Recording, system: System) -> None:
         self.past, self.system = past, system
         self.given = {c: v for c in CHANNELS if (v := getattr(system.clock, c)) != "auto"}
-        self.base = base_offset(past.imu, past.gnss, self.given)
+        self.base = base_offset(past, self.given)
         self.offsets = {"position": self.base, "velocity": self.base, "odometer": 0.0} | self.given
         self.found: dict[str, Offset] = {}
         self.mounting = _given_mounting(system)
