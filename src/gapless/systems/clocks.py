@@ -68,8 +68,8 @@ def base_offset(past: Recording, given: Mapping[str, float]) -> float:
         way, cure = ("later", "subtract") if base < 0.0 else ("earlier", "add")
         leap = " (GPS time is 18 s ahead of UTC)" if abs(abs(base) - 18.0) < 1.0 else ""
         raise RecordingError(
-            f"{past.name}: GNSS stamps are {abs(base):.1f} s {way} than the IMU's, by the turns that both tell "
-            f"of; put both on one clock: {cure} that much{leap}"
+            f"{past.name}: GNSS stamps are {abs(base):.1f} s {way} than the IMU's, by the turns that both "
+            f"tell of; put both on one clock: {cure} that much{leap}"
         )
     return base
 
