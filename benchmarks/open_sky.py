@@ -43,7 +43,7 @@ def main() -> None:
     """Print a row a recording."""
     solutions = {}
     print(f"{'recording':<14} {'clock offsets, s':<50}RMSE m  fixes m   roll    pitch heading, deg")
-    for folder in recordings(sys.argv[1:]):
+    for folder in recordings([Path(name) for name in sys.argv[1:]]):
         recording = io.read(folder)
         solution = fuse(recording)
         solutions[Path(folder).name] = solution

@@ -32,6 +32,9 @@ LADDER = (
 
 def recordings(given: Sequence[Path]) -> Sequence[Path]:
     """Folders to run."""
+    for path in given:
+        if not (path / "recording.toml").is_file():
+            raise SystemExit(f"{path}: no recording.toml in there; name the folder of a recording")
     if given:
         return given
     root = Path(os.environ.get("GAPLESS_RECORDINGS", Path(__file__).parents[1] / "../shared/data"))
