@@ -20,6 +20,9 @@ from gapless.tape import Tape
 
 MISLED = 60.0
 """For so long after its last word a bridge is suspected where a filter turns out to be wrong [s]."""
+FAR, SOON, OFTEN = 100.0, 60.0, 3
+"""A filter that fixes put right is not so far off [m] so soon again [s], unless its attitude or biases are
+out of reach of any correction; so often, and nothing of it is believed."""
 WITNESS = 1.0
 """For so long after it was believed an odometer is a witness of the speed [s]."""
 DENSITIES = 5
@@ -67,6 +70,8 @@ def assimilate(
     _process(state, settings, verdict)
     if verdict.widen:
         b.widen(o.H, o.z)
+        if channel == "position":
+            _find_astray(state, settings, time, o.z)
         if channel == "velocity" and time - state.heard.get("bridge", -math.inf) < MISLED:
             b.doubt(float(np.hypot(*o.z[:2])), settings.ceiling)
     r = verdict.r
@@ -87,6 +92,14 @@ def assimilate(
         inject(b.x, dx)
         b.trail.shift(dx[3:6])
     return True
+
+
+def _find_astray(state: State, settings: Settings, time: float, z: Array) -> None:
+    """Notice that a filter which was put right goes far astray again and again: then it is lost."""
+    if math.hypot(*z[:2]) > FAR:
+        state.astray = (*(t for t in state.astray if time - t < SOON), time)
+    if len(state.astray) >= OFTEN:
+        state.aligner, state.astray, state.lost = settings.aligner.copy(), (), True
 
 
 def _denied(state: State, time: float, z: Array) -> bool:

@@ -28,9 +28,15 @@ def begin(start: Start, state: State, settings: Settings, journal: Journal, tape
     """
     b, sd = state.belief, settings.initial_sd
     b.x[:3], b.x[3:6], b.x[6:10] = start.lla, start.v_n, start.q_nb
-    first = not state.aligned
+    b.error[:9] = 0.0
+    first = state.lost or not state.aligned
     if first:
         _first(start, state, settings)
+    if state.lost:
+        state.adaptation = {kind: rule.copy() for kind, rule in settings.adaptation.items()}
+        state.noise, state.lost = state.manner.noise, False
+        for bridge in state.bridges:
+            bridge.lost()
     b.set_sd("position", 2.0 * start.sd_position + 1.0)
     b.set_sd("velocity", start.sd_velocity + 0.5)
     b.set_sd("attitude", np.array([1.0, 1.0, 0.0]) * sd["attitude"])
@@ -47,6 +53,7 @@ def begin(start: Start, state: State, settings: Settings, journal: Journal, tape
 def _first(start: Start, state: State, settings: Settings) -> None:
     """What is constant, as far as it is known before anything was seen."""
     b, sd = state.belief, settings.initial_sd
+    b.x[10:], b.error[:] = 0.0, 0.0
     for name, value in settings.initial.items():
         b.block(name)[:] = value
     for name in settings.layout.blocks:

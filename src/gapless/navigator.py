@@ -205,8 +205,9 @@ class Navigator:
         used = self._update(reading.channel, reading.time, observation)
         if used:
             state.heard[reading.channel] = reading.time
+        sound = not state.lost and len(state.astray) < 2
         for bridge in state.bridges:
-            bridge.hear(state.belief, reading, used)
+            bridge.hear(state.belief, reading, used and sound)
 
     # --- samples --------------------------------------------------------------------------------
 

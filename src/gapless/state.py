@@ -56,6 +56,10 @@ class State:
         Whether there ever was an attitude.
     fade : float
         Factor on the covariance that is due once time goes on.
+    astray : tuple of float
+        When positions found the filter far off, lately [s].
+    lost : bool
+        Whether nothing of what was estimated is believed: the next start begins anew.
     """
 
     belief: Belief
@@ -73,6 +77,8 @@ class State:
     next_row: float = -math.inf
     aligned: bool = False
     fade: float = 1.0
+    astray: tuple[float, ...] = ()
+    lost: bool = False
 
     @property
     def source(self) -> str:
@@ -109,6 +115,8 @@ class State:
             self.next_row,
             self.aligned,
             self.fade,
+            self.astray,
+            self.lost,
         )
 
     def expect(self, readings: tuple[Reading, ...]) -> None:

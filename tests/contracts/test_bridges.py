@@ -110,6 +110,38 @@ def test_a_calibrated_bridge_that_knows_nothing_does_no_harm(name):
     assert np.exp(np.log(ratios).mean()) < 1.1, ratios.round(2)
 
 
+class _RunsAway:
+    """Thirty times as much with each word, until no number can hold it."""
+
+    def __init__(self):
+        self.said = 0.0
+
+    def fit(self, x, y):
+        self.outputs = y.shape[1]
+        return self
+
+    def predict(self, x):
+        assert np.isfinite(x).all()  # as scikit-learn asks
+        self.said = min(30.0 * self.said, 1e300) if self.said else 1.0
+        return np.full((len(x), self.outputs), self.said * 1e20 if self.said > 1e200 else self.said)
+
+
+@pytest.mark.parametrize("correction", ["feedback", "feedforward"])
+@pytest.mark.parametrize("name", PAPERS)
+def test_a_learner_that_runs_away_does_not_take_the_filter_along(log, name, correction):
+    """Not to where no fix brings it back from: fixes follow the outage for 45 s."""
+    setup = settings(changed(system(name), {"filter.correction": correction}, ""), log, {}, MOUNTING)
+    (bridge,) = setup.bridges
+    setup = replace(setup, bridges=(replace(bridge, learner=_RunsAway),))
+    part = log.slice(-np.inf, 169.0)
+    navigator = fold(Navigator(setup), events(part, {}))
+    assert any(channel.startswith("bridge") for channel in heard(navigator))
+    path = navigator.journal.trajectory()
+    assert np.isfinite(path.lla).all()
+    truth = log.reference.lla[np.searchsorted(log.reference.time, path.time[-1] - 1e-6)]
+    assert np.abs(earth.lla_to_ned(path.lla[-1], truth)).max() < 10.0  # fixes are good to 3 m
+
+
 @pytest.mark.parametrize("name", names())
 def test_every_recipe_builds(name):
     log = simulate("urban", "consumer", 30.0, 1)

@@ -6,7 +6,7 @@ import math
 import statistics
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any, ClassVar, Self
+from typing import TYPE_CHECKING, Any, ClassVar, Final, Self
 
 import numpy as np
 
@@ -26,6 +26,10 @@ from gapless.solution import Decision
 
 if TYPE_CHECKING:
     from gapless.learners import Regressor
+
+ABSURD: Final = {"position": 1e5, "velocity": 1e3, "attitude": math.pi}
+"""What a bridge says farther from the filter is not said [m, m/s, rad]: no filter is linear so far out, and a
+learner that extrapolates has moved one to where no fix could bring it back from."""
 
 
 @dataclass
@@ -239,12 +243,15 @@ class LearnedBridge:
     def _speak(self, belief: Belief, time: float) -> tuple[Saying, ...]:
         assert self.trained is not None
         epoch = self._epoch(belief, time, self.shadow.x)
-        y = self.trained.learner.predict(self.model.row(self.course, epoch)[None, :])
-        self.course = self.model.carry(self.course, epoch, np.asarray(y, float).reshape(-1))
         self.felt_before, self.before, self.count = self._felt_now(belief), time, self.count + 1
+        row = self.model.row(self.course, epoch)
+        if not np.isfinite(row).all():  # a recursion that ran away has no more to say
+            return ()
+        y = self.trained.learner.predict(row[None, :])
+        self.course = self.model.carry(self.course, epoch, np.asarray(y, float).reshape(-1))
         said = []
         for name, z, h in self.model.say(self.course, belief, epoch):
             r = self.trained.noise.of(name, len(z), self.heard, time - self.began, self.count)
-            if r is not None and np.isfinite(z).all():
+            if r is not None and (np.abs(z) < ABSURD[name]).all():
                 said.append(Saying(f"bridge_{name}", Observation(z, h, r)))
         return tuple(said)

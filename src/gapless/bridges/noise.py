@@ -196,7 +196,10 @@ def rehearse(model: Model, predict: Predict, epochs: Sequence[Epoch], horizon: i
         for epoch in epochs[first : first + horizon]:
             if np.isnan(epoch.dt) or epoch.segment != segment:
                 break
-            y = predict(model.row(course, epoch)[None, :])[0]
+            row = model.row(course, epoch)
+            if not np.isfinite(row).all():
+                break
+            y = predict(row[None, :])[0]
             course = model.carry(course, epoch, y)
             missed.append(Missed(epoch.time - start, model.wrong(course, epoch)))
     return missed
