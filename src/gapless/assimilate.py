@@ -20,7 +20,7 @@ from gapless.tape import Tape
 
 MISLED = 60.0
 """For so long after its last word a bridge is suspected where a filter turns out to be wrong [s]."""
-FAR, SOON, OFTEN = 100.0, 60.0, 3
+FAR, SOON, OFTEN = 50.0, 60.0, 4
 """A filter that fixes put right is not so far off [m] so soon again [s], unless its attitude or biases are
 out of reach of any correction; so often, and nothing of it is believed."""
 WITNESS = 1.0
@@ -96,7 +96,7 @@ def assimilate(
 
 def _find_astray(state: State, settings: Settings, time: float, z: Array) -> None:
     """Notice that a filter which was put right goes far astray again and again: then it is lost."""
-    if math.hypot(*z[:2]) > FAR:
+    if math.hypot(*z) > FAR:
         state.astray = (*(t for t in state.astray if time - t < SOON), time)
     if len(state.astray) >= OFTEN:
         state.aligner, state.astray, state.lost = settings.aligner.copy(), (), True

@@ -205,7 +205,7 @@ class Navigator:
         used = self._update(reading.channel, reading.time, observation)
         if used:
             state.heard[reading.channel] = reading.time
-        sound = not state.lost and len(state.astray) < 2
+        sound = not state.lost and len(state.astray) < 2  # or the next outage learns from it
         for bridge in state.bridges:
             bridge.hear(state.belief, reading, used and sound)
 

@@ -109,6 +109,25 @@ def test_a_filter_that_is_wrong_and_sure_gives_in(settled, channel, displaced, s
     assert apart(lost, after(navigator, log, START + soon)) < 10.0
 
 
+def test_a_filter_that_is_beyond_correction_begins_anew(settled):
+    """Upside down, with a gyro bias of half a turn in six seconds, and sure of both; fixes go on."""
+    navigator, log = settled
+    wrecked = navigator.fork()
+    wrecked.belief.x[6:10] = [0.0, 0.6, 0.8, 0.0]
+    wrecked.belief.x[10:13] = 0.5
+    fold(wrecked, events(log, {}))
+    honest = after(navigator, log)
+    assert len(wrecked.journal.alignments) == len(honest.journal.alignments) + 1
+    assert apart(wrecked, honest) < 1.0  # as if nothing had been
+
+
+@pytest.mark.parametrize("lie", ["far", "farther", "fast"])
+def test_one_lie_is_no_reason_to_begin_anew(settled, lie):
+    navigator, log = settled
+    told = after(navigator, shifted(log, (START + 1.0, START + 11.0), **LIES[lie]))
+    assert len(told.journal.alignments) == len(after(navigator, log).journal.alignments)
+
+
 def told(channel, time, z, nis, m):
     """An innovation of that surprise, with R = 1."""
     return Innovation(channel, time, z, 2.0 * np.eye(m), np.eye(m), nis)
