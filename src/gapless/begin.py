@@ -6,7 +6,9 @@ import numpy as np
 
 from gapless import earth
 from gapless.alignment.coarse import Start
+from gapless.filters.consider import Wander
 from gapless.inertial import propagate as at
+from gapless.inertial.trail import Trail
 from gapless.journal import Journal
 from gapless.settings import Settings
 from gapless.state import State
@@ -32,11 +34,10 @@ def begin(start: Start, state: State, settings: Settings, journal: Journal, tape
     first = state.lost or not state.aligned
     if first:
         _first(start, state, settings)
+    evidence = start.evidence
     if state.lost:
-        state.adaptation = {kind: rule.copy() for kind, rule in settings.adaptation.items()}
-        state.noise, state.lost = state.manner.noise, False
-        for bridge in state.bridges:
-            bridge.lost()
+        _forget(state, settings)
+        evidence += "; anew, for positions found the filter far off again and again"
     b.set_sd("position", 2.0 * start.sd_position + 1.0)
     b.set_sd("velocity", start.sd_velocity + 0.5)
     b.set_sd("attitude", np.array([1.0, 1.0, 0.0]) * sd["attitude"])
@@ -47,7 +48,7 @@ def begin(start: Start, state: State, settings: Settings, journal: Journal, tape
         tape.forgot(everything=first, course=True)
     state.aligner, state.aligned = None, True
     state.next_row = max(state.next_row, state.clock)
-    journal.align(state.clock, start.evidence)
+    journal.align(state.clock, evidence)
 
 
 def _first(start: Start, state: State, settings: Settings) -> None:
@@ -63,3 +64,12 @@ def _first(start: Start, state: State, settings: Settings) -> None:
     if start.gyro_bias is not None and float(prior.max()) > 2.0 * earth.RATE:
         b.block("gyro_bias")[:] = start.gyro_bias
         b.set_sd("gyro_bias", np.minimum(prior, 0.1 * DEG))
+
+
+def _forget(state: State, settings: Settings) -> None:
+    """What a filter that was lost had learned on the way, of itself and of its sensors' noise."""
+    state.belief.trail = Trail(state.belief.trail.length)
+    state.adaptation = {kind: rule.copy() for kind, rule in settings.adaptation.items()}
+    state.wander, state.noise, state.lost = Wander(settings.wander_time), state.manner.noise, False
+    for bridge in state.bridges:
+        bridge.lost()

@@ -118,6 +118,7 @@ def test_a_filter_that_is_beyond_correction_begins_anew(settled):
     fold(wrecked, events(log, {}))
     honest = after(navigator, log)
     assert len(wrecked.journal.alignments) == len(honest.journal.alignments) + 1
+    assert "anew" in wrecked.journal.alignments[-1][1]
     assert apart(wrecked, honest) < 1.0  # as if nothing had been
 
 
