@@ -66,6 +66,8 @@ def assimilate(
         verdict = state.adaptation[kind_of(channel)].judge(told)
         if verdict.r is o.R and not verdict.widen:
             state.agreed[channel] = time
+    elif not np.isfinite(b.x).all() or (np.isfinite(o.z).all() and np.isfinite(o.R).all()):
+        _lose(state, settings)  # not what was read is no number, but the belief
     journal.innovation(channel, time, o.z, s, nis, _factor(verdict.r, o.R))
     _process(state, settings, verdict)
     if verdict.widen:
@@ -99,6 +101,12 @@ def _find_astray(state: State, settings: Settings, time: float, z: Array) -> Non
     if math.hypot(*z) > FAR:
         state.astray = (*(t for t in state.astray if time - t < SOON), time)
     if len(state.astray) >= OFTEN:
+        _lose(state, settings)
+
+
+def _lose(state: State, settings: Settings) -> None:
+    """Wait for a start, which begins anew."""
+    if not state.lost:
         state.aligner, state.astray, state.lost = settings.aligner.copy(), (), True
 
 

@@ -122,6 +122,15 @@ def test_a_filter_that_is_beyond_correction_begins_anew(settled):
     assert apart(wrecked, honest) < 1.0  # as if nothing had been
 
 
+@pytest.mark.parametrize("where", ["x", "p"])
+def test_a_filter_without_a_number_begins_anew(settled, where):
+    navigator, log = settled
+    wrecked = navigator.fork()
+    getattr(wrecked.belief, where)[4] = np.nan
+    fold(wrecked, events(log, {}))
+    assert apart(wrecked, after(navigator, log)) < 1.0
+
+
 @pytest.mark.parametrize("lie", ["far", "farther", "fast"])
 def test_one_lie_is_no_reason_to_begin_anew(settled, lie):
     navigator, log = settled
