@@ -15,14 +15,14 @@ from gapless.journal import Journal
 from gapless.measurements.base import Observation
 from gapless.recording import Array
 from gapless.settings import Settings
-from gapless.state import State
+from gapless.state import SOON, State
 from gapless.tape import Tape
 
 MISLED = 60.0
 """For so long after its last word a bridge is suspected where a filter turns out to be wrong [s]."""
-FAR, SOON, OFTEN = 50.0, 60.0, 4
-"""A filter that fixes put right is not so far off [m] so soon again [s], unless its attitude or biases are
-out of reach of any correction; so often, and nothing of it is believed."""
+FAR, OFTEN = 50.0, 4
+"""A filter that fixes put right is not so far off [m] so soon again, unless its attitude or biases are out of
+reach of any correction; so often, and nothing of it is believed."""
 WITNESS = 1.0
 """For so long after it was believed an odometer is a witness of the speed [s]."""
 DENSITIES = 5

@@ -205,9 +205,11 @@ class Navigator:
         used = self._update(reading.channel, reading.time, observation)
         if used:
             state.heard[reading.channel] = reading.time
-        sound = not state.lost and len(state.astray) < 2  # or the next outage learns from it
         for bridge in state.bridges:
-            bridge.hear(state.belief, reading, used and sound)
+            if state.misled:
+                bridge.lost()
+            else:
+                bridge.hear(state.belief, reading, used)
 
     # --- samples --------------------------------------------------------------------------------
 

@@ -19,6 +19,8 @@ from gapless.recording import Array
 
 LASTS: Final = 1.6
 """A fix or a bridge's word holds for so long [s]: a second, and what a receiver at 1 Hz may be late."""
+SOON: Final = 60.0
+"""A filter that fixes put right does not go far astray again within this time [s]."""
 REACH: Final = 0.5
 """So much longer than `lateness` is the last part of a long block [s]."""
 
@@ -91,6 +93,11 @@ class State:
         if any(now - heard.get(name, -math.inf) < 1.0 for name in (*self.constraints, "odometer")):
             return "constraints"
         return "ins"
+
+    @property
+    def misled(self) -> bool:
+        """Whether fixes found the filter far astray more than once of late: nothing is learned from it."""
+        return self.lost or (len(self.astray) > 1 and self.clock - self.astray[-1] < SOON)
 
     def copy(self) -> State:
         """An independent copy.

@@ -86,7 +86,7 @@ class Bridge(Protocol):
         ...
 
     def lost(self) -> None:
-        """The IMU was silent: what went before does not lead up to what follows."""
+        """The IMU was silent, or the filter far astray: what went before does not lead up to what follows."""
         ...
 
     def decisions(self, start: float) -> tuple[Decision, ...]:
