@@ -71,3 +71,5 @@ def _forget(state: State, settings: Settings) -> None:
     state.belief.trail = Trail(state.belief.trail.length)
     state.adaptation = {kind: rule.copy() for kind, rule in settings.adaptation.items()}
     state.wander, state.noise, state.lost = Wander(settings.wander_time), state.manner.noise, False
+    for bridge in state.bridges:
+        bridge.lost()
