@@ -27,9 +27,8 @@ from gapless.rehearsal.stretch import Stretch
 from gapless.settings import Settings
 from gapless.solution import Decision
 
-SETTLE: Final = 30.0
-"""After its alignment a navigator is left alone for so long [s]: a wheel has some spectra to show by then."""
-
+SETTLE: Final = 45.0
+"""After its alignment a navigator is left alone for so long [s]: bridges have something to say by then."""
 RESERVE: Final = 8
 """Candidates that may be tried on credit, so that there is a choice early in a drive."""
 PONDER: Final = 5.0
