@@ -37,7 +37,7 @@ def begin(start: Start, state: State, settings: Settings, journal: Journal, tape
     evidence = start.evidence
     if state.lost:
         _forget(state, settings)
-        evidence += "; anew, for positions found the filter far off again and again"
+        evidence += "; anew, for the filter was beyond what fixes put right"
     b.set_sd("position", 2.0 * start.sd_position + 1.0)
     b.set_sd("velocity", start.sd_velocity + 0.5)
     b.set_sd("attitude", np.array([1.0, 1.0, 0.0]) * sd["attitude"])

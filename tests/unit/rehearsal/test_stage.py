@@ -10,7 +10,7 @@ from gapless.events import ImuBlock
 from gapless.feed import events
 from gapless.navigator import Navigator
 from gapless.rehearsal.judge import Choice
-from gapless.rehearsal.stage import PONDER, SETTLE, Plan, Rehearsing
+from gapless.rehearsal.stage import SETTLE, Plan, Rehearsing
 from gapless.scenarios import Outage, withhold
 from gapless.simulate import CAR, simulate
 from gapless.systems.adjust import changed, named
@@ -158,7 +158,7 @@ def test_a_standing_car_rehearses_nothing():
     rows, began = stage.journal.trajectory(), stage.journal.alignments[0][0] + SETTLE
     rehearsed = {round(one.start - began) for one in stage.history}
     speeds = dict[int, float]()
-    for k in range(0, int(rows.time[-1] - PONDER - began - 20.0), 10):
+    for k in range(0, int(rows.time[-1] - began - 20.0), 10):
         inside = (rows.time >= began + k) & (rows.time <= began + k + 20.0)
         speeds[k] = np.linalg.norm(rows.v_n[inside, :2], axis=1).mean()
     assert min(speeds.values()) < 1.5
