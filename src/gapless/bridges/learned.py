@@ -12,7 +12,7 @@ import numpy as np
 
 from gapless.bridges.base import Saying
 from gapless.bridges.epochs import NOWHERE, Epoch
-from gapless.bridges.model import Model
+from gapless.bridges.model import Model, go_on
 from gapless.bridges.noise import FilterNoise, Noise, rehearse
 from gapless.bridges.schedule import Schedule, Trained
 from gapless.bridges.shadow import Shadow, difference
@@ -244,11 +244,10 @@ class LearnedBridge:
         assert self.trained is not None
         epoch = self._epoch(belief, time, self.shadow.x)
         self.felt_before, self.before, self.count = self._felt_now(belief), time, self.count + 1
-        row = self.model.row(self.course, epoch)
-        if not np.isfinite(row).all():  # a recursion that ran away has no more to say
+        course = go_on(self.model, self.trained.learner.predict, self.course, epoch)
+        if course is None:
             return ()
-        y = self.trained.learner.predict(row[None, :])
-        self.course = self.model.carry(self.course, epoch, np.asarray(y, float).reshape(-1))
+        self.course = course
         said = []
         for name, z, h in self.model.say(self.course, belief, epoch):
             r = self.trained.noise.of(name, len(z), self.heard, time - self.began, self.count)

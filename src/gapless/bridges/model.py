@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple, Protocol
+
+import numpy as np
 
 from gapless.bridges.epochs import Epoch
 from gapless.inertial.belief import Belief
 from gapless.recording import Array
+
+Predict = Callable[[Array], Array]
+"""A trained learner: rows in, rows out."""
 
 
 class Part(NamedTuple):
@@ -125,3 +130,24 @@ class Model(Protocol):
         list of Part
         """
         ...
+
+
+def go_on(model: Model, predict: Predict, course: Any, epoch: Epoch) -> Any:
+    """Ask the learner, and follow its answer.
+
+    Parameters
+    ----------
+    model : Model
+    predict : callable
+    course : object
+    epoch : Epoch
+
+    Returns
+    -------
+    object or None
+        The course after the answer; None where a recursion ran away and there is nothing left to ask.
+    """
+    row = model.row(course, epoch)
+    if not np.isfinite(row).all():
+        return None
+    return model.carry(course, epoch, np.asarray(predict(row[None, :]), float).reshape(-1))

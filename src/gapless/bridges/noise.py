@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final, NamedTuple
 
 import numpy as np
 
 from gapless.bridges.epochs import Epoch
-from gapless.bridges.model import Model
+from gapless.bridges.model import Model, Predict, go_on
 from gapless.recording import Array
 
-Predict = Callable[[Array], Array]
-"""A trained learner: rows in, rows out."""
 ATTITUDE: Final = np.eye(3) * np.deg2rad(1.0) ** 2
 """Noise of a predicted attitude, which no fix states one for [rad^2]; our choice."""
 
@@ -196,10 +194,8 @@ def rehearse(model: Model, predict: Predict, epochs: Sequence[Epoch], horizon: i
         for epoch in epochs[first : first + horizon]:
             if np.isnan(epoch.dt) or epoch.segment != segment:
                 break
-            row = model.row(course, epoch)
-            if not np.isfinite(row).all():
+            course = go_on(model, predict, course, epoch)
+            if course is None:
                 break
-            y = predict(row[None, :])[0]
-            course = model.carry(course, epoch, y)
             missed.append(Missed(epoch.time - start, model.wrong(course, epoch)))
     return missed
