@@ -19,7 +19,7 @@ from outages import recordings
 
 from gapless.bridges.combs import Combs
 from gapless.bridges.loudness import SILENT
-from gapless.bridges.orders import TOP, WINDOW, Spectrum, spectrum
+from gapless.bridges.orders import LONGEST, TOP, Spectrum, spectrum, window
 from gapless.bridges.peak import peak
 from gapless.bridges.wheels import Wheels
 from gapless.laboratory.study import stored
@@ -35,10 +35,10 @@ def standing(log: Recording) -> Iterator[tuple[float, np.ndarray]]:
     """End and samples of each window, a second apart, around which no fix shows more than 0.1 m/s."""
     imu, speed = log.imu, np.linalg.norm(log.gnss.v_n, axis=1)
     felt = np.column_stack([imu.time, imu.dtheta / imu.dt[:, None], imu.dvel / imu.dt[:, None]])
-    for end in np.arange(imu.time[0] + WINDOW + 2.0, imu.time[-1] - 2.0, 1.0):
-        near = (log.gnss.time > end - WINDOW - 1.0) & (log.gnss.time < end + 1.0)
-        rows = felt[(imu.time > end - WINDOW - 0.4) & (imu.time < end + 0.1)]
-        whole = len(rows) and np.diff(rows[:, 0], prepend=end - WINDOW - 0.4, append=end + 0.1).max() < 0.2
+    for end in np.arange(imu.time[0] + LONGEST + 2.0, imu.time[-1] - 2.0, 1.0):
+        near = (log.gnss.time > end - LONGEST - 1.0) & (log.gnss.time < end + 1.0)
+        rows = felt[(imu.time > end - LONGEST - 0.4) & (imu.time < end + 0.1)]
+        whole = len(rows) and np.diff(rows[:, 0], prepend=end - LONGEST - 0.4, append=end + 0.1).max() < 0.2
         if whole and near.sum() >= 4 and speed[near].max() <= 0.1:
             yield end, rows
 
@@ -46,10 +46,9 @@ def standing(log: Recording) -> Iterator[tuple[float, np.ndarray]]:
 def heard(log: Recording, speed: float) -> list[Spectrum]:
     """The spectra of the windows, at a steady speed."""
     top = min(0.5 / float(np.median(np.diff(log.imu.time))) - 3.0, TOP)
-    return [
-        spectrum(rows, np.array([end - WINDOW - 0.2, end]), np.full(2, speed), end, top)
-        for end, rows in standing(log)
-    ]
+    ago, steady = np.linspace(-LONGEST - 0.2, 0.0, 165), np.full(165, speed)
+    length = window(ago, steady)
+    return [spectrum(rows, end + ago, steady, length, top) for end, rows in standing(log)]
 
 
 def main() -> None:

@@ -42,7 +42,7 @@ def reading() -> tuple[float, float]:
     rng = np.random.default_rng(1)
     rows = np.column_stack([np.arange(450) * 0.01, rng.standard_normal((450, 6))])
     times = np.arange(46) * 0.1
-    args = rows, times, 10.0 + times, 4.45, 47.0
+    args = rows, times, 10.0 + times, WINDOW, 47.0
     heard = spectrum(*args)
     memory = Memory.empty(heard.top)
     for _ in range(50):

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
 from typing import Final
 
 import numpy as np
@@ -11,7 +10,8 @@ import numpy as np
 from gapless._numba import kernel
 from gapless.bridges.knots import KNOTS, shares
 from gapless.bridges.loudness import SILENT, louder
-from gapless.bridges.orders import BINS, CHANNELS, LOWEST, ORDERS, STEP, WIDTH, Spectrum, evidence, gather
+from gapless.bridges.orders import BINS, CHANNELS, LOWEST, ORDERS, STEP, WIDTH, Spectrum, gather
+from gapless.bridges.template import Comb
 from gapless.recording import Array
 
 FORGET: Final = 300.0
@@ -26,57 +26,6 @@ SPEED_BIN, SPEED_BINS = 0.5, 140
 """Speeds are counted in so many bins of this width [m/s]."""
 _BINS: Final = shares(np.asarray(SPEED_BIN * (np.arange(SPEED_BINS) + 0.5), float))
 """How the bins of speed are shared by the knots."""
-
-
-@dataclass(frozen=True, eq=False)
-class Comb:
-    """The template of a car.
-
-    Parameters
-    ----------
-    height : ndarray, shape (6, orders)
-        Log power of the comb above what is around it, shrunk by its standard error.
-    error : ndarray, shape (6, orders)
-        That standard error.
-    variance : ndarray, shape (6,)
-        Of a single spectrum's log power, by channel.
-    mean : ndarray, shape (6, BINS)
-        Mean spectrum over frequency: what stays where it is when the speed changes.
-    levels : ndarray, shape (knots, 3)
-        How loud driving is; see `loudness`.
-    """
-
-    height: Array
-    error: Array
-    variance: Array
-    mean: Array
-    levels: Array
-
-    @cached_property
-    def weight(self) -> Array:
-        """T / s^2, shape (orders, 6)."""
-        return np.ascontiguousarray((self.height / self.variance[:, None]).T)
-
-    @cached_property
-    def cost(self) -> Array:
-        """Sum over channels of T^2 / (2 s^2), shape (orders,)."""
-        return np.asarray(0.5 * (self.weight * self.height.T).sum(axis=1))
-
-    def evidence(self, heard: Spectrum, speeds: Array) -> Array:
-        """Log likelihood of speeds against that of no comb; see `orders.evidence`.
-
-        Parameters
-        ----------
-        heard : Spectrum
-        speeds : ndarray, shape (k,)
-            [m/s]
-
-        Returns
-        -------
-        ndarray, shape (k,)
-        """
-        left = np.ascontiguousarray((heard.log - self.mean).T)
-        return evidence(left, heard.top, self.weight, self.cost, speeds)
 
 
 @dataclass

@@ -11,8 +11,9 @@ from typing import Self
 
 import numpy as np
 
-from gapless.bridges.comb import DOUBT, Comb, Memory, shrunk, without_trend
+from gapless.bridges.comb import DOUBT, Memory, shrunk, without_trend
 from gapless.bridges.knots import shares
+from gapless.bridges.template import Comb
 from gapless.recording import Array
 
 

@@ -18,16 +18,22 @@ from gapless.recording import Array
 
 CHANNELS: Final = 6
 WINDOW: Final = 4.0
-"""Length of a spectrum's window [s]."""
+"""Length of a spectrum's window [s], longer where the car is slow."""
+LONGEST: Final = 8.0
+"""But no longer than this [s]: the inertial course of the speed is as good as its tilt."""
+WAY: Final = 15.0
+"""A window is so long that the car goes this far [m]: orders are told apart by the way they have in it."""
+CRAWL: Final = 0.5
+"""Time is not warped to slower speeds [m/s]."""
 TOP: Final = 40.0
 """Above this frequency the comb of a wheel adds nothing [Hz]."""
 PAD: Final = 4
-"""Windows are padded with zeros to so many times their length."""
+"""Windows are padded with zeros to so many times the shortest."""
 WIDTH: Final = 1.0 / (PAD * WINDOW)
 """Of a bin [Hz]."""
 BINS: Final = int(TOP / WIDTH) + 2
 LEAST_POINTS: Final = 512
-"""Of a window: enough for `TOP`."""
+"""Of the shortest window: enough for `TOP`."""
 LOWEST, STEP, ORDERS = 0.2, 0.01, 311
 """First order of a template, distance of orders, and how many there are [cycles/m]."""
 BASE: Final = 31
@@ -94,6 +100,31 @@ def _between(x: Any, y: Any, at: Any) -> Any:
 
 
 @kernel
+def window(times: Array, speeds: Array) -> Any:
+    """Length of the window that ends now: `WAY` is gone in it, as far as the car was not too slow.
+
+    Parameters
+    ----------
+    times, speeds : ndarray, shape (m,)
+        The last one is now [s], [m/s].
+
+    Returns
+    -------
+    float
+        From `WINDOW` to `LONGEST`, or 0 where no window can be warped [s].
+    """
+    way, begin = 0.0, times.size - 1
+    while begin > 0 and speeds[begin - 1] >= CRAWL:
+        begin -= 1
+        dt = times[begin + 1] - times[begin]
+        way += 0.5 * (speeds[begin] + speeds[begin + 1]) * dt
+        if way >= WAY and times[-1] - times[begin] >= WINDOW:
+            break
+    length = min(times[-1] - times[begin], LONGEST)
+    return length if speeds[-1] >= CRAWL and length >= WINDOW else 0.0
+
+
+@kernel
 def whiten(power: Array) -> Array:
     """Log power less its running median over frequency: lines stay, colour goes.
 
@@ -149,24 +180,27 @@ class Spectrum(NamedTuple):
         Mean speed in the window [m/s].
     level : float
         Loudness: mean over rates and forces of the log of what their power spectra hold in sum.
+    length : float
+        Of the window [s].
     """
 
     log: Array
     top: float
     speed: float
     level: float
+    length: float = WINDOW
 
 
-def spectrum(samples: Array, times: Array, speeds: Array, end: float, top: float) -> Spectrum:
-    """Order spectrum of the window that ends at a time.
+def spectrum(samples: Array, times: Array, speeds: Array, length: float, top: float) -> Spectrum:
+    """Order spectrum of the window that ends at the last time.
 
     Parameters
     ----------
     samples : ndarray, shape (k, 7)
         As `warp` takes them; they cover the window.
     times, speeds : ndarray, shape (m,)
-    end : float
-        [s]
+    length : float
+        Of the window, from `WINDOW` to `LONGEST` [s].
     top : float
         Highest frequency [Hz].
 
@@ -175,32 +209,32 @@ def spectrum(samples: Array, times: Array, speeds: Array, end: float, top: float
     Spectrum
     """
     rate = (len(samples) - 1) / (samples[-1, 0] - samples[0, 0])
-    n = max(LEAST_POINTS, 1 << int(np.ceil(np.log2(WINDOW * rate))))
-    x = warp(samples, times, speeds, end - WINDOW, end, n)
-    f = np.fft.rfft(x, PAD * n, axis=1)
-    inside = (times >= end - WINDOW) & (times <= end)
+    least = max(LEAST_POINTS, 1 << int(np.ceil(np.log2(WINDOW * rate))))
+    n, begin = round(least * length / WINDOW), times[-1] - length
+    f = np.fft.rfft(warp(samples, times, speeds, begin, times[-1], n), PAD * least, axis=1)
     power, top = f.real**2 + f.imag**2, min(top, TOP)
-    return Spectrum(whiten(power), top, float(speeds[inside].mean()), loudness(power, top, n))
+    mean = float(speeds[times >= begin].mean())
+    return Spectrum(whiten(power), top, mean, loudness(power, top, n * least), length)
 
 
-def loudness(power: Array, top: float, n: int) -> float:
+def loudness(power: Array, top: float, points: int) -> float:
     """Mean over rates and forces of the log of their summed power between `RUMBLE` and a frequency.
 
     Parameters
     ----------
     power : ndarray, shape (6, k)
-        Of a window padded to `PAD` times its length.
+        Of a padded window.
     top : float
         [Hz]
-    n : int
-        Points of the window.
+    points : int
+        Of the window, times those of the shortest.
 
     Returns
     -------
     float
         Half of it: of an amplitude.
     """
-    heard = power[:, int(RUMBLE / WIDTH) : int(top / WIDTH)].sum(axis=1) / n**2 + TINY
+    heard = power[:, int(RUMBLE / WIDTH) : int(top / WIDTH)].sum(axis=1) / points + TINY
     return float(0.25 * (np.log(heard[:3].sum()) + np.log(heard[3:].sum())))
 
 
@@ -227,47 +261,3 @@ def gather(log: Array, top: float, speed: float, total: Array, count: Array, squ
             a = (1.0 - w) * log[c, k] + w * log[c, k + 1]
             total[c, j] += a
             square[c] += a * a
-
-
-@kernel
-def evidence(log: Array, top: float, weight: Array, cost: Array, speeds: Array) -> Array:
-    """Log likelihood of speeds against that of no comb at all.
-
-    Sum over channels and orders of (y T - T^2 / 2) / s^2: y ~ N(T, s^2) against N(0, s^2).
-
-    Parameters
-    ----------
-    log : ndarray, shape (BINS, 6)
-        A whitened spectrum less the mean one.
-    top : float
-        As in `Spectrum`.
-    weight : ndarray, shape (orders, 6)
-        T / s^2 of the template.
-    cost : ndarray, shape (orders,)
-        Sum over channels of T^2 / (2 s^2).
-    speeds : ndarray, shape (k,)
-        [m/s]
-
-    Returns
-    -------
-    ndarray, shape (k,)
-        Neighbouring orders are taken for independent, which they are not: to be tempered.
-    """
-    found = np.zeros(speeds.size)
-    for i in range(speeds.size):
-        total = 0.0
-        for j in range(ORDERS):
-            if cost[j] == 0.0:
-                continue
-            f = (LOWEST + STEP * j) * speeds[i] / WIDTH
-            if f * WIDTH >= top:
-                break
-            k = int(f)
-            w = f - k
-            low = high = 0.0
-            for c in range(CHANNELS):
-                low += log[k, c] * weight[j, c]
-                high += log[k + 1, c] * weight[j, c]
-            total += low + w * (high - low) - cost[j]
-        found[i] = total
-    return found

@@ -7,11 +7,11 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from gapless.bridges.comb import Comb
 from gapless.bridges.loudness import too_quiet
 from gapless.bridges.orders import Spectrum
+from gapless.bridges.template import Comb
 
-SLOWEST: Final = 2.5
+SLOWEST: Final = 1.5
 """Below this speed no comb is heard [m/s]: such speeds are the null hypothesis."""
 GRID: Final = 0.08
 """Distance of the speeds that are looked at [m/s]."""

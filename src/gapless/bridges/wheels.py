@@ -20,7 +20,7 @@ from gapless.bridges.combs import Combs
 from gapless.bridges.course import Course, Drift
 from gapless.bridges.felt import felt
 from gapless.bridges.mean_speed import mean_speed
-from gapless.bridges.orders import LOWEST, ORDERS, STEP, WINDOW, Spectrum, spectrum
+from gapless.bridges.orders import LONGEST, LOWEST, ORDERS, STEP, WINDOW, Spectrum, spectrum, window
 from gapless.bridges.peak import Peak, Trust, peak
 from gapless.bridges.slip import Hold
 from gapless.bridges.vehicle import recalled
@@ -31,14 +31,12 @@ from gapless.inertial.belief import Belief
 from gapless.measurements.base import Observation, Sensor
 from gapless.solution import Decision
 
-TAUGHT: Final = 3.5
+TAUGHT: Final = 1.5
 """Spectra of slower driving are not learned from [m/s]."""
 SURE: Final = 0.5
 """Nor are those where the filter's speed is less certain than this [m/s]."""
 RATE: Final = 25.0
 """A slower IMU hears no wheels [Hz]."""
-CRAWL: Final = 0.5
-"""Time is not warped to slower speeds [m/s]."""
 ROOM: Final = 0.4
 """Samples and velocities are kept for so much longer than a window [s]."""
 
@@ -58,7 +56,7 @@ class Wheels:
     period : float
         Time between spectra [s].
     inflate : float
-        Factor on variances: windows overlap.
+        Factor on variances: windows overlap, longer ones more.
     floor : float
         Standard deviation that no reading is better than [m/s].
     doubt : float
@@ -101,7 +99,7 @@ class Wheels:
     drift: Drift = field(default=Drift(), init=False)
     course: Course | None = field(default=None, init=False)
     hold: Hold | None = field(default=None, init=False)
-    reach: ClassVar[float] = WINDOW + ROOM
+    reach: ClassVar[float] = LONGEST + ROOM
 
     def __post_init__(self) -> None:
         for name in (f.name for f in fields(self) if f.init and f.name not in ("sensors", "vehicle")):
@@ -189,24 +187,22 @@ class Wheels:
 
     def _listen(self, belief: Belief, time: float) -> Spectrum | None:
         """The spectrum of the window that ends now, warped by the inertial course of the speed."""
-        times, gained = belief.trail.behind(WINDOW)
-        if len(times) < 10 or times[0] > time - WINDOW or times[-1] < time - 1e-3:
+        if not self.blocks:
+            return None
+        self.blocks = [ImuBlock.join(self.blocks).within(time - self.reach, math.inf)]  # some lie ahead
+        times, gained = belief.trail.behind(LONGEST)
+        if len(times) < 10 or times[-1] < time - 1e-3:
             return None
         v = belief.estimate()[3:6] + gained
         speeds = np.sqrt((v * v).sum(axis=1))
-        if speeds.min() < CRAWL:
+        length = window(times, speeds)
+        found = felt(self.blocks[0], time - length - ROOM, time) if length else None
+        if found is None:
             return None
-        if not self.blocks:
+        self.rate = found.rate
+        if self.rate < RATE - 0.5 or found.gap > 0.2 or found.rows[0, 0] > time - length:
             return None
-        begin = time - WINDOW - ROOM
-        self.blocks = [ImuBlock.join(self.blocks).within(begin, math.inf)]  # what is felt goes ahead of time
-        window = felt(self.blocks[0], begin, time)
-        if window is None:
-            return None
-        self.rate = window.rate
-        if self.rate < RATE - 0.5 or window.gap > 0.2 or window.rows[0, 0] > time - WINDOW:
-            return None
-        return spectrum(window.rows, times, speeds, time, 0.5 * self.rate - 3.0)
+        return spectrum(found.rows, times, speeds, length, 0.5 * self.rate - 3.0)
 
     def _learn(self, belief: Belief, heard: Spectrum, time: float) -> None:
         if heard.speed < TAUGHT or speed_sd(belief) > SURE:
@@ -222,14 +218,14 @@ class Wheels:
         if self.combs is None:
             self.combs = Combs.of(self.memory)
         self._follow(belief, time)
-        h = mean_speed(belief, WINDOW)
+        h = mean_speed(belief, heard.length)
         own = math.sqrt(max(float(h[0] @ belief.P @ h[0]), 0.0))
         found = peak(self.combs.at(heard.speed), heard, math.hypot(self.doubt * own, 0.3), self.trust)
         if found is None:
             self.refused += 1
             return ()
         speed = float(np.linalg.norm(belief.estimate()[3:6]))
-        r, slips = self._doubted(time, found, speed)
+        r, slips = self._doubted(time, found, speed, self.inflate * heard.length / WINDOW)
         self.readings = (*self.readings, Heard(time, speed + found.off, math.sqrt(r), speed, slips))
         return (Saying("bridge_speed", Observation(np.array([found.off]), h, np.array([[r]]))),)
 
@@ -241,13 +237,13 @@ class Wheels:
             self.hold = Hold.begin(time - self.patience, speed_sd(belief) ** 2, self.drift.rate)
         self.course = self.course.to(time, v / np.linalg.norm(v), corrected)
 
-    def _doubted(self, time: float, found: Peak, speed: float) -> tuple[float, float]:
+    def _doubted(self, time: float, found: Peak, speed: float, inflate: float) -> tuple[float, float]:
         """Variance that a reading counts with [m^2/s^2], and the probability of slip that widens it."""
         own = found.variance + self.floor**2
         assert self.hold is not None
         assert self.course is not None
         self.hold = self.hold.after(time, found.off + self.course.gained, own, speed)
-        return self.inflate * own / self.hold.rolls, self.hold.slips
+        return inflate * own / self.hold.rolls, self.hold.slips
 
 
 def speed_sd(belief: Belief) -> float:

@@ -9,18 +9,20 @@ from gapless.bridges.orders import (
     BASE,
     BINS,
     CHANNELS,
+    LONGEST,
     LOWEST,
     ORDERS,
     PAD,
     STEP,
     TINY,
+    WAY,
     WIDTH,
     WINDOW,
-    evidence,
     gather,
     spectrum,
     warp,
     whiten,
+    window,
 )
 
 ORDER = LOWEST + STEP * np.arange(ORDERS)
@@ -50,7 +52,8 @@ def test_a_chirp_that_follows_the_speed_is_warped_into_a_tone():
 
 def test_one_line_where_an_ordinary_spectrum_smears_it():
     samples, times, speeds = speeding_up(200.0)
-    heard = spectrum(samples, times, speeds, 4.4, 97.0)
+    now = times <= 4.4
+    heard = spectrum(samples, times[now], speeds[now], WINDOW, 97.0)
     assert heard.log.shape == (CHANNELS, BINS)
     assert heard.top == 40.0
     assert heard.speed == pytest.approx(8.0 + 1.5 * 2.4, abs=0.01)
@@ -89,17 +92,32 @@ def test_sums_over_orders_are_interpolation():
     assert 0 < told.sum() < ORDERS
 
 
-def test_evidence_is_the_log_likelihood_ratio_of_two_normals():
-    rng = np.random.default_rng(5)
-    log, top = rng.normal(size=(CHANNELS, BINS)), 40.0
-    height, variance = rng.normal(size=(CHANNELS, ORDERS)), rng.uniform(0.5, 2.0, CHANNELS)
-    height[:, 100:150] = 0.0
-    weight = (height / variance[:, None]).T.copy()
-    cost = 0.5 * (weight * height.T).sum(axis=1)
-    speeds = np.array([2.5, 9.0, 14.2, 31.0])
-    found = evidence(log.T.copy(), top, weight, cost, speeds)
-    for speed, one in zip(speeds, found, strict=True):
-        told = ORDER * speed < top
-        y = np.array([np.interp(ORDER * speed, WIDTH * np.arange(BINS), row) for row in log])
-        against = (y**2 - (y - height) ** 2) / (2.0 * variance[:, None])
-        assert one == pytest.approx(against[:, told].sum(), rel=1e-9, abs=1e-9)
+def window_of(speeds, dt=0.05):
+    return window(dt * np.arange(len(speeds)), np.asarray(speeds, float))
+
+
+def test_a_window_is_as_long_as_the_car_takes_for_its_way():
+    steady = lambda v: window_of(np.full(200, v))  # noqa: E731
+    assert steady(20.0) == pytest.approx(WINDOW)
+    assert steady(WAY / 6.0) == pytest.approx(6.0, abs=0.06)  # history every 0.05 s
+    assert steady(1.0) == pytest.approx(LONGEST)
+
+
+def test_no_window_reaches_back_into_a_crawl():
+    assert window_of([0.2] * 100 + [2.0] * 101) == pytest.approx(5.0, abs=0.06)
+    assert window_of([0.2] * 150 + [2.0] * 50) == 0.0
+    assert window_of([2.0] * 199 + [0.2]) == 0.0
+    assert window_of([2.0] * 60) == 0.0
+
+
+def test_a_longer_window_has_the_same_lines_and_loudness():
+    """Twice the samples in as many bins: a steady car sounds the same."""
+    samples, times, _ = speeding_up(200.0, first=3.0, gain=0.0, order=2.0, span=8.6)
+    samples[:, 1:] += np.random.default_rng(2).normal(size=(len(samples), CHANNELS))
+    steady = np.full(len(times), 3.0)
+    short, long = (spectrum(samples, times, steady, length, 40.0) for length in (WINDOW, LONGEST))
+    assert short.log.shape == long.log.shape
+    lines = (short.log.argmax(axis=1), long.log.argmax(axis=1))
+    assert np.abs(np.array(lines) - 2.0 * 3.0 / WIDTH).max() <= 1
+    # white noise of some 300 independent bins a channel: a twentieth of its power either way
+    assert short.level == pytest.approx(long.level, abs=0.1)
