@@ -53,11 +53,11 @@ class Comb:
     @cached_property
     def bounds(self) -> tuple[Array, Array]:
         """Least and most that a spectrum's log power counts with, shape (orders, 6) each."""
-        far = BEYOND * np.sqrt(self.variance)
-        return np.minimum(self.height.T, 0.0) - far, np.maximum(self.height.T, 0.0) + far
+        height, far = np.ascontiguousarray(self.height.T), BEYOND * np.sqrt(self.variance)
+        return np.minimum(height, 0.0) - far, np.maximum(height, 0.0) + far
 
     def evidence(self, heard: Spectrum, speeds: Array) -> Array:
-        """Log likelihood of speeds against that of no comb; see `orders.evidence`.
+        """Log likelihood of speeds against that of no comb; see the function.
 
         Parameters
         ----------
