@@ -18,6 +18,8 @@ BETA: Final = 0.719
 RHO: Final = 2.01
 _SURE: Final = (0.460, -1.919)
 """a and b of the 99 % bound, log2(log2(bound / energy)) = a i + b, for white noise (Flandrin et al. 2005)."""
+VANISHING: Final = 1e-300
+"""What is smaller has no reciprocal, and is nothing."""
 
 
 def noise_level(first: Array) -> float:
@@ -114,7 +116,7 @@ def shrink_intervals(mode: Array, limit: float, out: Array) -> None:
     n, begin, most = mode.shape[0], 0, 0.0
     for i in range(n + 1):
         if i == n or (i > begin and (mode[i] > 0.0) != (mode[begin] > 0.0)):
-            if most > limit:
+            if most > limit and most > VANISHING:
                 scale = (most - limit) / most
                 for k in range(begin, i):
                     out[k] += scale * mode[k]
