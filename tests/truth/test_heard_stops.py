@@ -37,9 +37,10 @@ def read(log, comb, believed, sd):
 
 
 @pytest.mark.parametrize(
-    ("believed", "sd", "few"), [(0.8, 1.9, 5), (1.6, 1.2, 5), (3.2, 0.6, 50), (5.0, 2.0, 5)]
+    ("believed", "sd", "few", "most"),
+    [(0.8, 1.9, 15, 0), (1.6, 1.2, 40, 0), (3.2, 0.6, 50, 1), (5.0, 2.0, 5, 0)],
 )
-def test_no_speed_is_read_where_the_car_stands(believed, sd, few):
+def test_no_speed_is_read_where_the_car_stands(believed, sd, few, most):
     """By combs alone 31, 80, 81 and 12 of 291 do, with loudness 0, 0, 1 and 0.
 
     That a car that rolls is heard is told elsewhere.
@@ -51,5 +52,5 @@ def test_no_speed_is_read_where_the_car_stands(believed, sd, few):
         for seed in (3, 7)
     ]
     print(told)
-    assert sum(with_it for (with_it, _), _ in told) <= 1
+    assert sum(with_it for (with_it, _), _ in told) <= most
     assert sum(without for _, (without, _) in told) >= few

@@ -57,7 +57,7 @@ class Comb:
         return np.minimum(height, 0.0) - far, np.maximum(height, 0.0) + far
 
     def evidence(self, heard: Spectrum, speeds: Array) -> Array:
-        """Log likelihood of speeds against that of no comb; see the function.
+        """Log likelihood of speeds against that of no comb, as the kernel below has it.
 
         Parameters
         ----------

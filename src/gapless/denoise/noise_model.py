@@ -116,7 +116,7 @@ def shrink_intervals(mode: Array, limit: float, out: Array) -> None:
     n, begin, most = mode.shape[0], 0, 0.0
     for i in range(n + 1):
         if i == n or (i > begin and (mode[i] > 0.0) != (mode[begin] > 0.0)):
-            if most > limit and most > VANISHING:
+            if most > max(limit, VANISHING):
                 scale = (most - limit) / most
                 for k in range(begin, i):
                     out[k] += scale * mode[k]

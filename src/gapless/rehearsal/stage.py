@@ -29,8 +29,6 @@ from gapless.solution import Decision
 
 SETTLE: Final = 45.0
 """After its alignment a navigator is left alone for so long [s]: bridges have something to say by then."""
-
-
 RESERVE: Final = 8
 """Candidates that may be tried on credit, so that there is a choice early in a drive."""
 PONDER: Final = 5.0
