@@ -16,8 +16,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from gapless.feed import events
-from gapless.navigator import Navigator
+from gapless.fold.feed import events
+from gapless.fold.navigator import Navigator
 from gapless.scenarios import Outage
 from gapless.simulate import simulate
 from gapless.systems.adjust import named

@@ -21,16 +21,16 @@ from msgspec.structs import replace
 
 from gapless import attitude, earth
 from gapless.evaluation.statistics import chi_square_quantile, consistency, nees
-from gapless.events import ImuBlock
-from gapless.feed import events
-from gapless.navigator import Navigator
-from gapless.recording import Recording
+from gapless.fold.feed import events
+from gapless.fold.navigator import Navigator
 from gapless.sensors import Grade
 from gapless.sensors import grade as named_grade
 from gapless.simulate import Receiver, simulate
 from gapless.systems.build import settings
 from gapless.systems.library import load
 from gapless.systems.recipe import Clock, Mounting, System
+from gapless.trip.events import ImuBlock
+from gapless.trip.recording import Recording
 
 Array = np.ndarray
 PARTS = {"position": slice(0, 3), "velocity": slice(3, 6), "attitude": slice(6, 9)}

@@ -23,9 +23,9 @@ from gapless.denoise import EmdCiit, Windowed
 from gapless.denoise.compare import CHANNELS, Row, compare, whole_and_causal
 from gapless.denoise.imu import denoised
 from gapless.denoise.sifting import SIFTINGS, decompose
-from gapless.recording import Imu
 from gapless.sensors import grade
 from gapless.simulate import simulate
+from gapless.trip.recording import Imu
 
 RATE = 100.0
 SHORT = 30_000

@@ -22,10 +22,10 @@ from scipy.spatial.transform import Rotation
 from gapless.evaluation import score
 from gapless.laboratory.pool import in_order
 from gapless.laboratory.study import Source, stored
-from gapless.recording import Imu, Recording
 from gapless.scenarios import plan
 from gapless.systems.adjust import named
 from gapless.systems.fuse import fuse
+from gapless.trip.recording import Imu, Recording
 from gapless.units import DEG
 
 Change = Callable[[Recording], Recording]

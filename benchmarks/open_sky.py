@@ -14,8 +14,8 @@ from outages import recordings
 from gapless import earth, io
 from gapless.evaluation import score
 from gapless.evaluation.interpolation import interpolate
-from gapless.solution import Solution
 from gapless.systems.fuse import fuse
+from gapless.trip.solution import Solution
 
 
 def offsets(solution: Solution) -> dict[str, float]:

@@ -20,9 +20,9 @@ import numpy as np
 
 import gapless as gp
 from gapless.evaluation import score
-from gapless.recording import Imu, Recording, Trajectory
 from gapless.reports import write_report
-from gapless.solution import Decision, Innovations, Solution
+from gapless.trip.recording import Imu, Recording, Trajectory
+from gapless.trip.solution import Decision, Innovations, Solution
 
 RATE = 200.0
 RUNS = 5

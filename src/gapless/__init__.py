@@ -62,11 +62,9 @@ if TYPE_CHECKING:
     from gapless.errors import AlignmentError, ConfigError, GaplessError, RecordingError
     from gapless.evaluation import score
     from gapless.io import read, recording_from_frames, to_pandas, write, write_recording
-    from gapless.recording import Gnss, Imu, Odometer, Recording, Trajectory
     from gapless.reports import summarise, write_report
     from gapless.scenarios import Outage, plan
     from gapless.simulate import simulate as simulate_drive
-    from gapless.solution import Decision, Solution
     from gapless.sweeps.conduct import sweep
     from gapless.sweeps.store import read as read_sweep
     from gapless.systems.fuse import fuse
@@ -74,6 +72,8 @@ if TYPE_CHECKING:
     from gapless.systems.recipe import System
     from gapless.systems.smooth import smooth
     from gapless.systems.vehicle import vehicle_attitude
+    from gapless.trip.recording import Gnss, Imu, Odometer, Recording, Trajectory
+    from gapless.trip.solution import Decision, Solution
 
 __all__ = [
     "AlignmentError",
@@ -111,11 +111,11 @@ _HOMES: Final = {
     "errors": ("AlignmentError", "ConfigError", "GaplessError", "RecordingError"),
     "evaluation": ("score",),
     "io": ("read", "recording_from_frames", "to_pandas", "write", "write_recording"),
-    "recording": ("Gnss", "Imu", "Odometer", "Recording", "Trajectory"),
+    "trip.recording": ("Gnss", "Imu", "Odometer", "Recording", "Trajectory"),
     "reports": ("summarise", "write_report"),
     "scenarios": ("Outage", "plan"),
     "simulate": ("simulate_drive",),
-    "solution": ("Decision", "Solution"),
+    "trip.solution": ("Decision", "Solution"),
     "sweeps.conduct": ("sweep",),
     "sweeps.store": ("read_sweep",),
     "systems.fuse": ("fuse",),

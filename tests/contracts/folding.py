@@ -8,14 +8,14 @@ from functools import cache
 
 import numpy as np
 
-from gapless.events import Event, ImuBlock
-from gapless.feed import events
-from gapless.navigator import Navigator, Settings
-from gapless.recording import Recording
+from gapless.fold.feed import events
+from gapless.fold.navigator import Navigator, Settings
 from gapless.scenarios import Outage, withhold
 from gapless.simulate import Receiver, Vehicle, WheelSensor, simulate
 from gapless.systems.build import settings
 from gapless.systems.recipe import System
+from gapless.trip.events import Event, ImuBlock
+from gapless.trip.recording import Recording
 from gapless.units import DEG
 
 CAR = Vehicle(imu=(1.2, 0.3, -0.6), antenna=(0.4, 0.1, -1.5), mounting=(0.0, 2.0 * DEG, -3.0 * DEG))

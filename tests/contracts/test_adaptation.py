@@ -14,10 +14,10 @@ from gapless.evaluation import score
 from gapless.filters.adaptation.base import Innovation
 from gapless.filters.adaptation.registry import KINDS, RULES, Chain, bends_gain, chain, kind_of
 from gapless.filters.update import assess, correct
-from gapless.motion import displace
 from gapless.simulate import Receiver, simulate
 from gapless.systems.fuse import fuse
 from gapless.systems.library import parse
+from gapless.trip.motion import displace
 
 ROBUST = ("gate", "chi_square", "igg3")
 """Rules that claim robustness against gross errors."""

@@ -8,8 +8,8 @@ from folding import belief, fold, heard, rows
 
 from gapless import earth
 from gapless.bridges.epochs import FEATURES
-from gapless.feed import events
-from gapless.navigator import Navigator
+from gapless.fold.feed import events
+from gapless.fold.navigator import Navigator
 from gapless.scenarios import Outage, withhold
 from gapless.simulate import simulate
 from gapless.systems.adjust import changed, named

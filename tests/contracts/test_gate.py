@@ -7,14 +7,14 @@ import pytest
 from folding import CAR, fold, prepared, rows
 
 from gapless import earth
-from gapless.events import ImuBlock
-from gapless.feed import events
 from gapless.filters.adaptation.base import Innovation
 from gapless.filters.adaptation.gate import Gate
 from gapless.filters.adaptation.relock import SOFT
-from gapless.motion import displace
-from gapless.navigator import Navigator
+from gapless.fold.feed import events
+from gapless.fold.navigator import Navigator
 from gapless.simulate import Receiver, WheelSensor, simulate
+from gapless.trip.events import ImuBlock
+from gapless.trip.motion import displace
 
 START = 60.0
 """Driving, and well settled [s]."""

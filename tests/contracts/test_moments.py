@@ -5,11 +5,11 @@ from dataclasses import replace
 import pytest
 from folding import CLOCKS, belief, fold, heard, prepared, recording, rows, run, singles
 
-from gapless.events import ImuBlock
-from gapless.feed import events
-from gapless.navigator import Navigator
+from gapless.fold.feed import events
+from gapless.fold.navigator import Navigator
 from gapless.scenarios import Outage, withhold
 from gapless.systems.library import parse
+from gapless.trip.events import ImuBlock
 
 RECIPES = {
     "cubature": '[filter]\nmoments = "cubature"',

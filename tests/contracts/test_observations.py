@@ -5,7 +5,6 @@ import pytest
 from scipy.optimize import brentq
 
 from gapless import attitude
-from gapless.events import Motion, Reading
 from gapless.inertial import propagate as at
 from gapless.inertial.belief import Belief, inject
 from gapless.inertial.layout import EXTRAS, Layout
@@ -16,6 +15,7 @@ from gapless.measurements.stillness import Stillness
 from gapless.measurements.vehicle import CRAWL, axes
 from gapless.measurements.zero_velocity import zero_velocity
 from gapless.simulate import Vehicle, drive, increments, point, trajectory
+from gapless.trip.events import Motion, Reading
 
 FULL, CORE = Layout(tuple(EXTRAS)), Layout()
 ANGLES, AXLE, LEVER, SCALE, SHORT = (0.04, -0.07), -1.3, np.array([-0.8, 0.4, -1.1]), -0.02, 0.12

@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 from folding import CLOCKS, OUTAGE, belief, fold, heard, prepared, recording, rows, run, singles
 
-from gapless.events import ImuBlock
-from gapless.feed import events
-from gapless.navigator import Navigator
+from gapless.fold.feed import events
+from gapless.fold.navigator import Navigator
 from gapless.systems.recipe import Filter, GnssUse, System
+from gapless.trip.events import ImuBlock
 
 
 def stops(feed, times):

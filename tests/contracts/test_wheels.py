@@ -5,13 +5,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from gapless.events import ImuBlock
-from gapless.feed import events
+from gapless.fold.feed import events
 from gapless.scenarios import Outage, withhold
 from gapless.simulate import CAR, simulate
 from gapless.systems.adjust import changed, named
 from gapless.systems.conduct import navigator_for
 from gapless.systems.decide import Decided
+from gapless.trip.events import ImuBlock
 
 OUTAGES = (Outage(235.0, 250.0), Outage(285.0, 300.0))
 DECIDED = Decided({}, (np.zeros(2), np.full(2, 0.02)), 0.0, (), 100.0)

@@ -12,17 +12,17 @@ from gapless.bridges.combs import Combs
 from gapless.bridges.orders import LOWEST, ORDERS, STEP
 from gapless.bridges.wheels import Wheels
 from gapless.evaluation import score
-from gapless.feed import events
-from gapless.recording import Recording
+from gapless.fold.feed import events
+from gapless.fold.settings import Settings
 from gapless.scenarios import Outage
-from gapless.settings import Settings
 from gapless.simulate import CAR, Chassis, simulate
-from gapless.solution import Solution
 from gapless.systems.adjust import named
 from gapless.systems.conduct import as_built, navigator_for
 from gapless.systems.decide import Decided
 from gapless.systems.fuse import fuse
 from gapless.systems.recipe import System
+from gapless.trip.recording import Recording
+from gapless.trip.solution import Solution
 
 FLOOR = 2.0
 """Largest errors below this are alike, as for the judge [m]."""

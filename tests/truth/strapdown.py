@@ -8,8 +8,8 @@ from gapless import attitude, earth
 from gapless.inertial import propagate as at
 from gapless.inertial.layout import ROW, Layout
 from gapless.inertial.propagate import propagate
-from gapless.recording import Imu
 from gapless.simulate.path import Path, Segment
+from gapless.trip.recording import Imu
 
 DEG = np.pi / 180.0
 SILENT = np.zeros(7)

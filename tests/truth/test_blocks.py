@@ -6,8 +6,8 @@ from strapdown import Run, circuit
 
 from gapless.inertial import propagate as at
 from gapless.inertial.increments import split
-from gapless.recording import Imu
 from gapless.simulate.motion import Vehicle, increments, trajectory
+from gapless.trip.recording import Imu
 
 BOX = Vehicle(imu=(1.2, 0.3, -0.6), mounting=(0.05, -0.08, 0.6))
 NOISE = np.array([1e-8, 1e-4, 1e-12, 1e-8, 1e-4, 1.0 / 3600.0, 1.0 / 1800.0])

@@ -13,7 +13,7 @@ from gapless import attitude, earth
 from gapless.inertial.dynamics import transition
 from gapless.inertial.layout import NAV, ROW
 from gapless.inertial.mechanise import local_earth, mechanise
-from gapless.recording import Imu
+from gapless.trip.recording import Imu
 
 EXTRAS = ("gyro_scale", "accel_scale", "gravity")
 STEPS, DT, SPEED = 200, 1e-3, 290.0

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from gapless.exhibits import fundamental
+from gapless.trip.exhibits import fundamental
 
 ORDERS = 0.2 + 0.01 * np.arange(311)
 ERROR = np.full((6, 311), 0.1)

@@ -10,9 +10,9 @@ from hypothesis import strategies as st
 
 from gapless import earth
 from gapless.errors import ConfigError
-from gapless.motion import offset_ned
-from gapless.recording import Gnss, Imu, Recording
 from gapless.scenarios import KINDS, At, Effect, Gaps, Outage, Periodic, Random, parse, plan, withhold
+from gapless.trip.motion import offset_ned
+from gapless.trip.recording import Gnss, Imu, Recording
 
 ORIGIN = np.array([0.77, 2.0, 50.0])
 START = 1000.0

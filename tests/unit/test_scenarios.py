@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 
 from gapless.errors import ConfigError
-from gapless.recording import Gnss
 from gapless.scenarios import Outage, Periodic, parse, plan, withheld, withhold
+from gapless.trip.recording import Gnss
 
 
 def fixes(time):

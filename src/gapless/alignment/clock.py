@@ -14,8 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gapless import attitude
-from gapless.motion import Sums
-from gapless.recording import Array, Imu, Trajectory
+from gapless.trip.motion import Sums
+from gapless.trip.recording import Array, Imu, Trajectory
 
 STEP = 0.02
 """Spacing of the scan [s]."""

@@ -15,8 +15,8 @@ from typing import NamedTuple, Self
 import numpy as np
 
 from gapless import attitude, earth
-from gapless.events import Reading
-from gapless.recording import Array
+from gapless.trip.events import Reading
+from gapless.trip.recording import Array
 from gapless.units import DEG
 
 

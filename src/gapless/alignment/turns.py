@@ -11,9 +11,9 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from gapless.motion import Sums
-from gapless.recording import Array, Gnss, Imu
-from gapless.steering import steered
+from gapless.trip.motion import Sums
+from gapless.trip.recording import Array, Gnss, Imu
+from gapless.trip.steering import steered
 
 REACH: Final = 30.0
 """Offsets up to this are looked for [s]: leap seconds are 18."""

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import ClassVar, NamedTuple, Protocol, Self
 
-from gapless.events import ImuBlock, Motion, Reading
-from gapless.exhibits import Exhibit
 from gapless.inertial.belief import Belief
 from gapless.measurements.base import Observation
-from gapless.solution import Decision
+from gapless.trip.events import ImuBlock, Motion, Reading
+from gapless.trip.exhibits import Exhibit
+from gapless.trip.solution import Decision
 
 
 class Saying(NamedTuple):

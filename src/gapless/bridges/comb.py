@@ -12,7 +12,7 @@ from gapless.bridges.knots import KNOTS, shares
 from gapless.bridges.loudness import SILENT, louder
 from gapless.bridges.orders import BINS, CHANNELS, LOWEST, ORDERS, STEP, WIDTH, Spectrum, gather
 from gapless.bridges.template import Comb
-from gapless.recording import Array
+from gapless.trip.recording import Array
 
 FORGET: Final = 300.0
 """Spectra after which one counts a third."""

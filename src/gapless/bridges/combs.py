@@ -14,7 +14,7 @@ import numpy as np
 from gapless.bridges.comb import DOUBT, Memory, shrunk, without_trend
 from gapless.bridges.knots import shares
 from gapless.bridges.template import Comb
-from gapless.recording import Array
+from gapless.trip.recording import Array
 
 
 @dataclass(frozen=True, eq=False)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import Final, NamedTuple, Self
 
-from gapless.recording import Array
+from gapless.trip.recording import Array
 
 STRETCH: Final = 8.0
 """Corrections are summed over so long [s]."""

@@ -8,7 +8,7 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from gapless import attitude
-from gapless.recording import Array
+from gapless.trip.recording import Array
 
 
 class Epoch(NamedTuple):

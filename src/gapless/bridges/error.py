@@ -23,7 +23,7 @@ from gapless.bridges.model import Part
 from gapless.bridges.shadow import difference
 from gapless.inertial.belief import Belief
 from gapless.inertial.coast import STATE
-from gapless.recording import Array
+from gapless.trip.recording import Array
 
 PLACES: Final = {"position": 0, "velocity": 3, "attitude": 6}
 """Where a component starts in an error, and in the error state of a filter."""

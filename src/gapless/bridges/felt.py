@@ -7,8 +7,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from gapless._numba import kernel
-from gapless.events import ImuBlock
-from gapless.recording import Array
+from gapless.trip.events import ImuBlock
+from gapless.trip.recording import Array
 
 
 class Felt(NamedTuple):

@@ -17,10 +17,10 @@ import numpy as np
 from gapless import earth
 from gapless.bridges.epochs import Epoch, features
 from gapless.bridges.model import Part
-from gapless.events import Reading
 from gapless.inertial.belief import Belief
 from gapless.measurements.base import Sensor
-from gapless.recording import Array
+from gapless.trip.events import Reading
+from gapless.trip.recording import Array
 
 
 class Course(NamedTuple):

@@ -6,7 +6,7 @@ from typing import Final
 
 import numpy as np
 
-from gapless.recording import Array
+from gapless.trip.recording import Array
 
 KNOTS: Final = (5.0, 10.0, 18.0)
 """Sums are kept apart by speed, each spectrum shared by the two knots around its own [m/s]."""

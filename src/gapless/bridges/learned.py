@@ -16,13 +16,13 @@ from gapless.bridges.model import Model, go_on
 from gapless.bridges.noise import FilterNoise, Noise, rehearse
 from gapless.bridges.schedule import Schedule, Trained
 from gapless.bridges.shadow import Shadow, difference
-from gapless.events import ImuBlock, Motion, Reading
 from gapless.inertial import propagate as at
 from gapless.inertial.belief import Belief
 from gapless.inertial.coast import STATE
 from gapless.measurements.base import Observation, Sensor
-from gapless.recording import Array
-from gapless.solution import Decision
+from gapless.trip.events import ImuBlock, Motion, Reading
+from gapless.trip.recording import Array
+from gapless.trip.solution import Decision
 
 if TYPE_CHECKING:
     from gapless.learners import Regressor

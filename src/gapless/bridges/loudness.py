@@ -11,7 +11,7 @@ from typing import Final
 import numpy as np
 
 from gapless.bridges.knots import KNOTS, shares
-from gapless.recording import Array
+from gapless.trip.recording import Array
 
 FEW: Final = 3.0
 """Spectra as loud as the window in question that those heard are mixed with: it begins at no news."""

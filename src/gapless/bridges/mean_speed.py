@@ -13,7 +13,7 @@ from gapless._numba import kernel
 from gapless.attitude import matrix_rows
 from gapless.inertial.belief import Belief
 from gapless.inertial.trail import GRAVITY
-from gapless.recording import Array
+from gapless.trip.recording import Array
 
 
 def mean_speed(belief: Belief, window: float) -> Array:

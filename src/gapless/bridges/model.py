@@ -9,7 +9,7 @@ import numpy as np
 
 from gapless.bridges.epochs import Epoch
 from gapless.inertial.belief import Belief
-from gapless.recording import Array
+from gapless.trip.recording import Array
 
 Predict = Callable[[Array], Array]
 """A trained learner: rows in, rows out."""

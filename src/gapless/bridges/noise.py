@@ -11,7 +11,7 @@ import numpy as np
 
 from gapless.bridges.epochs import Epoch
 from gapless.bridges.model import Model, Predict, go_on
-from gapless.recording import Array
+from gapless.trip.recording import Array
 
 ATTITUDE: Final = np.eye(3) * np.deg2rad(1.0) ** 2
 """Noise of a predicted attitude, which no fix states one for [rad^2]; our choice."""

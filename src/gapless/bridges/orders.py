@@ -14,7 +14,7 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 
 from gapless._numba import inline, kernel
-from gapless.recording import Array
+from gapless.trip.recording import Array
 
 CHANNELS: Final = 6
 WINDOW: Final = 4.0

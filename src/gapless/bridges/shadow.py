@@ -15,11 +15,11 @@ from typing import Self
 import numpy as np
 
 from gapless import attitude, earth
-from gapless.events import Motion
 from gapless.inertial import propagate as at
 from gapless.inertial.belief import Belief
 from gapless.inertial.coast import STATE, coast
-from gapless.recording import Array
+from gapless.trip.events import Motion
+from gapless.trip.recording import Array
 
 
 @dataclass

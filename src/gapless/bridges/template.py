@@ -10,7 +10,7 @@ import numpy as np
 
 from gapless._numba import kernel
 from gapless.bridges.orders import CHANNELS, LOWEST, ORDERS, STEP, WIDTH, Spectrum
-from gapless.recording import Array
+from gapless.trip.recording import Array
 
 BEYOND: Final = 1.5
 """What is so many deviations off the comb and off none is no more news: another line lies there, or a gap."""

@@ -25,11 +25,11 @@ from gapless.bridges.peak import Peak, Trust, peak
 from gapless.bridges.slip import Hold
 from gapless.bridges.vehicle import recalled
 from gapless.errors import ConfigError
-from gapless.events import ImuBlock, Motion, Reading
-from gapless.exhibits import Heard, WheelsHeard, fundamental
 from gapless.inertial.belief import Belief
 from gapless.measurements.base import Observation, Sensor
-from gapless.solution import Decision
+from gapless.trip.events import ImuBlock, Motion, Reading
+from gapless.trip.exhibits import Heard, WheelsHeard, fundamental
+from gapless.trip.solution import Decision
 
 TAUGHT: Final = 1.5
 """Spectra of slower driving are not learned from [m/s]."""

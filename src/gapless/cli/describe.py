@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from gapless.recording import Columns, Recording
+    from gapless.trip.recording import Columns, Recording
 
 
 def describe(recording: Recording) -> list[str]:

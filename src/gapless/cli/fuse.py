@@ -15,9 +15,9 @@ from gapless.cli.options import job, job_options, out_option
 if TYPE_CHECKING:
     from gapless.cli.options import Job
     from gapless.evaluation import Scores
-    from gapless.recording import Recording
     from gapless.reports.background import Feature
-    from gapless.solution import Solution
+    from gapless.trip.recording import Recording
+    from gapless.trip.solution import Solution
 
 FORMATS = {
     "csv": "every column, as text",

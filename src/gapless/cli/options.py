@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 import click
 
 if TYPE_CHECKING:
-    from gapless.recording import Recording
     from gapless.scenarios import Outage
     from gapless.systems.recipe import System
+    from gapless.trip.recording import Recording
 
 Command = TypeVar("Command", bound=Callable[..., Any])
 
@@ -146,7 +146,7 @@ def job(
 
     with ThreadPoolExecutor(1) as reader:  # it waits for the disk and for pyarrow's own threads
         reading = reader.submit(read, *recording)
-        from gapless.navigator import load_kernels  # what navigates takes as long to load
+        from gapless.fold.navigator import load_kernels  # what navigates takes as long to load
 
         load_kernels()
         found = reading.result()

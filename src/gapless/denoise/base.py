@@ -8,7 +8,7 @@ from typing import Protocol
 import numpy as np
 
 from gapless.errors import ConfigError, RecordingError
-from gapless.recording import Array
+from gapless.trip.recording import Array
 
 SHORTEST = 32
 """A record of fewer samples has no modes to speak of: it is left as it is."""

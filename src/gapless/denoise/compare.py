@@ -11,7 +11,7 @@ from gapless.denoise import DENOISERS
 from gapless.denoise.base import Denoiser, snr
 from gapless.denoise.imu import denoised
 from gapless.denoise.windowed import Windowed
-from gapless.recording import Array, Imu
+from gapless.trip.recording import Array, Imu
 
 CHANNELS: Final = ("f_x", "f_y", "f_z", "w_x", "w_y", "w_z")
 """Specific forces and angular rates, in the order of Table 2."""

@@ -9,7 +9,7 @@ import numpy as np
 from gapless.denoise.base import WholeRecord, at_least
 from gapless.denoise.noise_model import energy_bound, noise_level
 from gapless.denoise.sifting import SIFTINGS, modes
-from gapless.recording import Array
+from gapless.trip.recording import Array
 
 
 @dataclass(frozen=True)

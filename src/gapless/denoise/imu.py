@@ -11,7 +11,7 @@ from typing import Final
 import numpy as np
 
 from gapless.denoise.base import Denoiser
-from gapless.recording import Array, Imu
+from gapless.trip.recording import Array, Imu
 
 HOLE: Final = 0.5
 """A longer silence [s] parts one stretch of a log from the next: each is denoised as a record of its own."""

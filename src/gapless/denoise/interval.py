@@ -17,7 +17,7 @@ from gapless.denoise.noise_model import noise_level, shrink_intervals, threshold
 from gapless.denoise.sifting import SIFTINGS, modes
 from gapless.denoise.wavelet import Wavelet
 from gapless.errors import ConfigError
-from gapless.recording import Array
+from gapless.trip.recording import Array
 
 FACTOR: Final = 0.7
 """C of the thresholds; liu2019 gives none."""

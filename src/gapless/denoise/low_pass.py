@@ -8,7 +8,7 @@ import numpy as np
 
 from gapless.denoise.base import WholeRecord, at_least
 from gapless.errors import ConfigError
-from gapless.recording import Array
+from gapless.trip.recording import Array
 
 
 @dataclass(frozen=True)

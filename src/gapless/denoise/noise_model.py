@@ -12,7 +12,7 @@ import numpy as np
 
 from gapless._numba import long_kernel
 from gapless.denoise.wavelet import MEDIAN
-from gapless.recording import Array
+from gapless.trip.recording import Array
 
 BETA: Final = 0.719
 RHO: Final = 2.01

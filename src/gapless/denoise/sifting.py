@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from gapless._numba import inline, long_kernel
-from gapless.recording import Array
+from gapless.trip.recording import Array
 
 SIFTINGS = 10
 """Siftings of each mode (liu2019, section 5.2)."""

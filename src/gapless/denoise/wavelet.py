@@ -10,7 +10,7 @@ import numpy as np
 
 from gapless.denoise.base import WholeRecord
 from gapless.errors import ConfigError, MissingExtraError
-from gapless.recording import Array
+from gapless.trip.recording import Array
 
 THRESHOLDINGS: Final = ("soft", "hard", "bayes")
 MEDIAN: Final = 0.6745

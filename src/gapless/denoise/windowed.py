@@ -12,7 +12,7 @@ from gapless._numba import inline, long_kernel
 from gapless.denoise.base import Denoiser, sound
 from gapless.denoise.wavelet import MEDIAN
 from gapless.errors import ConfigError
-from gapless.recording import Array
+from gapless.trip.recording import Array
 
 SPANS: Final = np.array([2.0, 4.0, 8.0, 16.0, 32.0, 64.0])
 """Memories of the moving averages that a value is made of [samples]."""

@@ -6,7 +6,7 @@ from gapless.evaluation.outages import OutageScore, score_outage, score_outages
 from gapless.evaluation.scores import Accuracy, Scores, outage_ages, pool_spread, score, score_pieces
 from gapless.evaluation.statistics import Consistency, Spread, consistency, nees, spread
 from gapless.filters.quantile import chi_square_quantile
-from gapless.motion import first_motion
+from gapless.trip.motion import first_motion
 
 __all__ = [
     "QUANTITIES",

@@ -8,8 +8,8 @@ from typing import Final
 import numpy as np
 
 from gapless.evaluation.errors import Errors
-from gapless.recording import Array, Columns
 from gapless.scenarios import Outage
+from gapless.trip.recording import Array, Columns
 
 
 @dataclass(frozen=True, eq=False)

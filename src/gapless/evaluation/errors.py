@@ -12,8 +12,8 @@ from gapless.attitude import from_euler, to_matrix, wrap
 from gapless.evaluation.interpolation import interpolate
 from gapless.evaluation.statistics import nees
 from gapless.filters.quantile import chi_square_quantile
-from gapless.motion import horizontal_velocity, motion, offset_ned
-from gapless.recording import Array, Columns, Gnss, Trajectory
+from gapless.trip.motion import horizontal_velocity, motion, offset_ned
+from gapless.trip.recording import Array, Columns, Gnss, Trajectory
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,7 +7,7 @@ from typing import Final
 import numpy as np
 
 from gapless.attitude import wrap
-from gapless.recording import Array, Trajectory
+from gapless.trip.recording import Array, Trajectory
 
 MAX_GAP: Final = 1.5
 """Rows further apart than this [s] are not interpolated between."""

@@ -12,8 +12,8 @@ import numpy as np
 from gapless.evaluation.ages import QUANTITIES, ages
 from gapless.evaluation.errors import Errors
 from gapless.evaluation.statistics import rms
-from gapless.recording import Array, Imu
 from gapless.scenarios import Outage, withheld
+from gapless.trip.recording import Array, Imu
 
 BEFORE_MOTION: Final = "before motion + 30 s"
 NO_MOTION: Final = "no motion"

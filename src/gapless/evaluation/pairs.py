@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gapless.evaluation.resampling import Interval, Order, interval, resample
-from gapless.recording import Array
+from gapless.trip.recording import Array
 
 _EXACT: Final = 50
 """Up to so many ranks their distribution is counted out; beyond, it is normal to 1e-3."""

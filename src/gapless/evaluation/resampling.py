@@ -10,7 +10,7 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from gapless.recording import Array
+from gapless.trip.recording import Array
 
 RESAMPLES: Final = 1000
 """Ends of a 95 % interval then scatter by some 3 % of its width."""

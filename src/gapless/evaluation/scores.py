@@ -20,10 +20,10 @@ from gapless.evaluation.outages import (
     score_outages,
 )
 from gapless.evaluation.statistics import Consistency, Spread, consistency, rms, spread
-from gapless.motion import first_motion
-from gapless.recording import Recording, Trajectory
 from gapless.scenarios import Outage, withheld
-from gapless.solution import Solution
+from gapless.trip.motion import first_motion
+from gapless.trip.recording import Recording, Trajectory
+from gapless.trip.solution import Solution
 
 DECISIONS_TAKEN: Final = "decisions taken late"
 """The decision that says that an outage had begun before anything could be decided."""

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from gapless.filters.quantile import chi_square_quantile
-from gapless.recording import Array
+from gapless.trip.recording import Array
 
 
 @dataclass(frozen=True)

@@ -18,7 +18,7 @@ import numpy as np
 
 from gapless._numba import inline, kernel
 from gapless.filters.update import cholesky, solve
-from gapless.recording import Array
+from gapless.trip.recording import Array
 
 
 @inline

@@ -17,7 +17,7 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from gapless.recording import Array
+from gapless.trip.recording import Array
 
 ROUNDING: Final = 1e-8
 """Of a filter's variance: a smaller smoothed one is a difference of two numbers that are nearly equal,

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from gapless._numba import inline, kernel
-from gapless.recording import Array
+from gapless.trip.recording import Array
 
 
 @inline

@@ -12,7 +12,7 @@ from gapless.attitude import product
 from gapless.inertial import propagate as at
 from gapless.inertial.layout import ROW, Layout
 from gapless.inertial.trail import Trail
-from gapless.recording import Array
+from gapless.trip.recording import Array
 from gapless.units import DEG
 
 CORE_STATES: Final = 15

@@ -7,7 +7,7 @@ import numpy as np
 from gapless._numba import kernel
 from gapless.attitude import matrix_rows
 from gapless.inertial.mechanise import local_earth, mechanise
-from gapless.recording import Array
+from gapless.trip.recording import Array
 
 STATE = 10
 """Latitude, longitude [rad], height [m], v_n(3) [m/s], q_nb(4)."""

@@ -17,7 +17,7 @@ from typing import Any
 from gapless._numba import inline
 from gapless.inertial.increments import Three
 from gapless.inertial.layout import NAV, ROW
-from gapless.recording import Array
+from gapless.trip.recording import Array
 
 
 @inline

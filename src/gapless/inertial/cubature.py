@@ -35,7 +35,7 @@ from gapless.inertial.propagate import (
     VEL,
     propagate,
 )
-from gapless.recording import Array
+from gapless.trip.recording import Array
 
 NOMINAL = QUAT + 4
 """Length of the nominal navigation state: lat, lon, h, v_n, q_nb."""

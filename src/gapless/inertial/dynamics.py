@@ -9,7 +9,7 @@ from gapless._numba import inline
 from gapless.inertial.increments import Three
 from gapless.inertial.layout import ROW
 from gapless.inertial.mechanise import Nine
-from gapless.recording import Array
+from gapless.trip.recording import Array
 
 GRAVITY_NORTHWARD: Final = 0.1033
 """Rate of normal gravity with latitude over sin cos [m/s^2]: g_e (2 k + e^2) of Somigliana's formula."""

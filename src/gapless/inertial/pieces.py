@@ -9,10 +9,10 @@ from typing import NamedTuple
 import numpy as np
 
 from gapless._numba import kernel
-from gapless.events import EPS, ImuBlock, Reading
 from gapless.inertial import propagate as at
 from gapless.inertial.increments import split
-from gapless.recording import Array
+from gapless.trip.events import EPS, ImuBlock, Reading
+from gapless.trip.recording import Array
 
 GAP = 0.5
 """A longer silence of the IMU is not bridged: it ends in a new alignment [s]."""

@@ -11,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 
 from gapless._numba import kernel
-from gapless.recording import Array
+from gapless.trip.recording import Array
 
 NOTHING = 1e-13
 """A pivot smaller than this share of its variance is rounding: the state depends on those before."""

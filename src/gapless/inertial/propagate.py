@@ -18,7 +18,7 @@ from gapless.inertial.covariance import add_noise, apply, apply_extras, apply_to
 from gapless.inertial.dynamics import transition
 from gapless.inertial.layout import NAV, ROW
 from gapless.inertial.mechanise import local_earth, mechanise
-from gapless.recording import Array
+from gapless.trip.recording import Array
 
 LAT, LON, HEIGHT, VEL, QUAT, GYRO_BIAS, ACCEL_BIAS, EXTRA = 0, 1, 2, 3, 6, 10, 13, 16
 """Indices of the nominal state: lat, lon, h, v_n(3), q_nb(4), gyro bias(3), accel bias(3), extras."""

@@ -8,7 +8,7 @@ from typing import Final
 import numpy as np
 
 from gapless._numba import kernel
-from gapless.recording import Array
+from gapless.trip.recording import Array
 
 GRAVITY = 9.8
 """Enough for telling what gravity did, and what a tilt feigns [m/s^2]."""

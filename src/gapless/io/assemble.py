@@ -10,7 +10,7 @@ from gapless.io.orientation import check_orientation
 from gapless.io.other_logs import odometer_from_log, reference_from_log
 from gapless.io.plausible import check_odometer
 from gapless.io.satellite_log import gnss_from_log
-from gapless.recording import Array, Recording
+from gapless.trip.recording import Array, Recording
 
 
 def assemble(

@@ -8,7 +8,7 @@ from typing import Final
 import numpy as np
 
 from gapless.errors import RecordingError
-from gapless.recording import Array
+from gapless.trip.recording import Array
 
 FRD: Final = "forward-right-down"
 """The body axes used inside."""

@@ -11,7 +11,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from gapless.recording import Array
+from gapless.trip.recording import Array
 
 HEAD: Final = 1000
 """Rows that the nominal interval is taken from (10 s at 100 Hz)."""

@@ -15,8 +15,8 @@ from gapless.io.log import Log
 from gapless.io.other_logs import ODOMETER_COLUMNS, REFERENCE_COLUMNS
 from gapless.io.satellite_log import GNSS_COLUMNS
 from gapless.io.writers.table import SOURCES, solution_columns
-from gapless.recording import Recording
-from gapless.solution import Solution
+from gapless.trip.recording import Recording
+from gapless.trip.solution import Solution
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -8,7 +8,7 @@ import numpy as np
 
 from gapless.io.clock import even_stamps, gap_length, intervals, nominal_interval
 from gapless.io.log import Log
-from gapless.recording import Array, Imu, Note
+from gapless.trip.recording import Array, Imu, Note
 
 GYRO: Final = ("gyro_x", "gyro_y", "gyro_z")
 ACCEL: Final = ("accel_x", "accel_y", "accel_z")

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gapless.errors import RecordingError
-from gapless.recording import Array, Note
+from gapless.trip.recording import Array, Note
 
 
 @dataclass(frozen=True, eq=False)

@@ -14,9 +14,9 @@ import numpy as np
 
 from gapless.io.axes import nearest_axes
 from gapless.io.log import Log
-from gapless.motion import Sums
-from gapless.recording import Array, Gnss, Imu
-from gapless.steering import Steered, rightward, steered
+from gapless.trip.motion import Sums
+from gapless.trip.recording import Array, Gnss, Imu
+from gapless.trip.steering import Steered, rightward, steered
 from gapless.units import DEG
 
 _SPAN: Final = 4.0

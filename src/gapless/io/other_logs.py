@@ -9,7 +9,7 @@ import numpy as np
 from gapless.attitude import wrap
 from gapless.io.log import Log
 from gapless.io.satellite_log import POSITION, VELOCITY, check_positions, in_order
-from gapless.recording import Note, Odometer, Trajectory
+from gapless.trip.recording import Note, Odometer, Trajectory
 from gapless.units import DEG
 
 ATTITUDE: Final = ("roll", "pitch", "heading")

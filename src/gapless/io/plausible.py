@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gapless.io.log import Log
-from gapless.motion import offset_ned
-from gapless.recording import Array, Gnss, Odometer
+from gapless.trip.motion import offset_ned
+from gapless.trip.recording import Array, Gnss, Odometer
 
 _SPAN: Final = 10.0
 """Seconds over which displacements are compared: long against the noise of a fix."""

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from gapless.io.log import Log
 from gapless.io.plausible import check_velocity
-from gapless.recording import Array, Gnss, Note
+from gapless.trip.recording import Array, Gnss, Note
 from gapless.units import DEG
 
 POSITION: Final = ("lat", "lon", "height")

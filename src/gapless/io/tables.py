@@ -15,7 +15,7 @@ import numpy as np
 
 from gapless.errors import RecordingError
 from gapless.io.log import Log
-from gapless.recording import Array
+from gapless.trip.recording import Array
 
 
 def load(path: Path, wanted: Collection[str]) -> Log:

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from gapless.errors import RecordingError
 from gapless.io.log import Log
 from gapless.io.tables import is_number, join, unreadable
-from gapless.recording import Array
+from gapless.trip.recording import Array
 
 _COMMENTS: Final = (b"#", b"%")
 _HEAD: Final = 1 << 16

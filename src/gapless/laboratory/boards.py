@@ -11,7 +11,7 @@ import numpy as np
 from gapless.evaluation.pairs import Pair, holm, pair
 from gapless.evaluation.resampling import FIGURES, Order, interval, order, resample
 from gapless.laboratory.rows import Row
-from gapless.recording import Array
+from gapless.trip.recording import Array
 
 POOLED: Final = "pooled"
 """Stands for all recordings together."""

@@ -24,8 +24,8 @@ from gapless.laboratory.rows import (
     truth_columns,
 )
 from gapless.laboratory.study import ISOLATED, PASSES, Scenario, Source
-from gapless.recording import Recording
 from gapless.scenarios import Outage
+from gapless.trip.recording import Recording
 
 
 @dataclass(frozen=True)

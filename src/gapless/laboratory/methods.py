@@ -9,10 +9,10 @@ from typing import NamedTuple, Protocol
 import numpy as np
 
 from gapless.laboratory.prefix import Peek, from_the_start, samples
-from gapless.recording import Recording, Trajectory
 from gapless.scenarios import Outage
-from gapless.solution import Solution
 from gapless.systems.forks import Fork
+from gapless.trip.recording import Recording, Trajectory
+from gapless.trip.solution import Solution
 
 
 class Run(NamedTuple):

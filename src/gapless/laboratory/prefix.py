@@ -12,10 +12,10 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from gapless.motion import displace
-from gapless.recording import Recording, Trajectory
 from gapless.scenarios import Outage, withhold
-from gapless.solution import Solution
+from gapless.trip.motion import displace
+from gapless.trip.recording import Recording, Trajectory
+from gapless.trip.solution import Solution
 
 RANDOM_SAMPLES: Final = 3
 """Rows of an outage that are looked at besides the first and the last."""

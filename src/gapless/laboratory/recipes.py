@@ -9,12 +9,10 @@ from typing import Final
 
 import numpy as np
 
-from gapless.feed import events
+from gapless.fold.feed import events
 from gapless.laboratory.methods import Function, Run
 from gapless.laboratory.prefix import Peek, first_difference, from_the_start, known_at, samples, spoil
-from gapless.recording import Recording
 from gapless.scenarios import Outage
-from gapless.solution import Solution
 from gapless.systems.build import stamps
 from gapless.systems.decide import Decided
 from gapless.systems.forks import piece, run_with_forks
@@ -22,6 +20,8 @@ from gapless.systems.fuse import DECISIONS_TAKEN_LATE, decide_before, fold, with
 from gapless.systems.prepare import prepared, sees_the_future
 from gapless.systems.recipe import System
 from gapless.systems.smooth import smooth
+from gapless.trip.recording import Recording
+from gapless.trip.solution import Solution
 
 RATE: Final = 10.0
 """Rows of a solution per second."""

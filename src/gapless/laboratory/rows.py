@@ -13,9 +13,9 @@ import numpy as np
 
 from gapless.evaluation import QUANTITIES, Ages, OutageScore, Scores, chi_square_quantile
 from gapless.laboratory.study import Scenario
-from gapless.recording import Array, Columns, Recording, Trajectory
 from gapless.scenarios import Outage
-from gapless.solution import Solution
+from gapless.trip.recording import Array, Columns, Recording, Trajectory
+from gapless.trip.solution import Solution
 from gapless.units import DEG
 
 Track = TypeVar("Track", bound=Columns)

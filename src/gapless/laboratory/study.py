@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import Final, Protocol
 
 from gapless.errors import ConfigError
-from gapless.recording import Recording
 from gapless.scenarios import Outage, Periodic, Plan, parse
+from gapless.trip.recording import Recording
 
 PASSES, ISOLATED = "passes", "isolated"
 PROTOCOLS: Final = {

@@ -12,7 +12,7 @@ from sklearn.utils._param_validation import Integral, Interval
 
 from gapless.learners.base import OutputByOutput, TakesWeights, answers, taught, weighable
 from gapless.learners.random_layer import relm
-from gapless.recording import Array
+from gapless.trip.recording import Array
 
 _FLOOR: Final = 1e-6
 """Of the error rate, and of how far it stays below one: a log of zero says nothing."""

@@ -14,7 +14,7 @@ from sklearn.utils.validation import (
     validate_data,
 )
 
-from gapless.recording import Array
+from gapless.trip.recording import Array
 
 
 class Learner(MultiOutputMixin, RegressorMixin, BaseEstimator):

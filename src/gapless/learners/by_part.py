@@ -11,7 +11,7 @@ from sklearn.utils._param_validation import Integral, Interval
 
 from gapless.learners.base import Learner, answers
 from gapless.learners.rbf import RBFNetwork
-from gapless.recording import Array
+from gapless.trip.recording import Array
 
 
 class ByPart(Learner):

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.lib import format as npy
 
 from gapless.errors import ModelError
-from gapless.recording import Array
+from gapless.trip.recording import Array
 
 _TEXT: Final = "model.json"
 _STAMP: Final = (1980, 1, 1, 0, 0, 0)

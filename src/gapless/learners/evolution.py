@@ -8,7 +8,7 @@ from typing import Any, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from gapless.recording import Array
+from gapless.trip.recording import Array
 
 Bits: TypeAlias = npt.NDArray[np.uint8]
 

@@ -11,7 +11,7 @@ from sklearn.base import clone
 from sklearn.utils.parallel import delayed
 
 from gapless.learners.base import answers, taught
-from gapless.recording import Array
+from gapless.trip.recording import Array
 
 
 class Fitness(NamedTuple):

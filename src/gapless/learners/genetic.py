@@ -17,7 +17,7 @@ from gapless.learners.base import OutputByOutput
 from gapless.learners.evolution import Bits, decoded, next_generation
 from gapless.learners.fitness import Fitness
 from gapless.learners.svr import MeanLossSVR
-from gapless.recording import Array
+from gapless.trip.recording import Array
 
 
 class GeneticSearchCV(OutputByOutput):

@@ -10,7 +10,7 @@ from sklearn.utils._param_validation import Interval
 
 from gapless.learners.base import TakesWeights
 from gapless.learners.rbf import squared_distances
-from gapless.recording import Array
+from gapless.trip.recording import Array
 
 
 class LSSVR(TakesWeights):

@@ -10,7 +10,7 @@ from sklearn.base import BaseEstimator, clone
 from sklearn.utils._param_validation import Integral, Interval, StrOptions
 from sklearn.utils.validation import check_array, check_is_fitted, validate_data
 
-from gapless.recording import Array
+from gapless.trip.recording import Array
 
 MAX_ORDER: Final = 20
 """The longest lag that "auto" looks at."""

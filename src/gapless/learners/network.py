@@ -11,7 +11,7 @@ from sklearn.utils import check_random_state
 from sklearn.utils._param_validation import Integral, Interval
 
 from gapless.learners.base import Learner
-from gapless.recording import Array
+from gapless.trip.recording import Array
 
 
 class Layers(NamedTuple):

@@ -16,7 +16,7 @@ from sklearn.utils._param_validation import Integral, Interval, StrOptions
 
 from gapless.learners.base import TakesWeights
 from gapless.learners.least_squares import Triangle, absorb, nothing, solve
-from gapless.recording import Array
+from gapless.trip.recording import Array
 
 
 def sigmoid(x: Array, half_period: float) -> Array:

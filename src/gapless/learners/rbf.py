@@ -13,7 +13,7 @@ from sklearn.utils._param_validation import Integral, Interval
 
 from gapless.learners.base import Learner
 from gapless.learners.least_squares import absorb, nothing, solve
-from gapless.recording import Array
+from gapless.trip.recording import Array
 
 _NEIGHBOURS: Final = 2
 """Centres that a width looks at (Moody and Darken 1989, section 3)."""

@@ -7,7 +7,7 @@ from importlib import import_module
 from typing import Any, Final, Protocol, Self
 
 from gapless.errors import ConfigError, MissingExtraError, registered_elsewhere
-from gapless.recording import Array
+from gapless.trip.recording import Array
 
 LEARNERS: Final[dict[str, str | Callable[[], Any]]] = {
     "elm": "gapless.learners.random_layer.elm",

@@ -17,7 +17,7 @@ from sklearn.base import BaseEstimator
 
 from gapless.errors import ModelError
 from gapless.learners.container import join, part
-from gapless.recording import Array
+from gapless.trip.recording import Array
 
 FORMAT: Final = 1
 _KIND: Final = "gapless learner"

@@ -16,7 +16,7 @@ from threadpoolctl import ThreadpoolController
 
 from gapless.learners.base import Learner, answers, as_good_as
 from gapless.learners.random_layer import relm
-from gapless.recording import Array
+from gapless.trip.recording import Array
 
 
 def _goes_on(scaled: Any) -> bool:

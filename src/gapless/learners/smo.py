@@ -14,7 +14,7 @@ import numpy as np
 from sklearn.exceptions import ConvergenceWarning
 
 from gapless._numba import kernel
-from gapless.recording import Array
+from gapless.trip.recording import Array
 
 TOLERANCE: Final = 1e-3
 """Largest violation of the optimality conditions that is left, in units of the target."""

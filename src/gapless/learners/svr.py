@@ -11,7 +11,7 @@ from sklearn.utils._param_validation import Interval
 from gapless.learners.base import OutputByOutput
 from gapless.learners.rbf import squared_distances
 from gapless.learners.smo import solve
-from gapless.recording import Array
+from gapless.trip.recording import Array
 
 
 class Expansion(NamedTuple):

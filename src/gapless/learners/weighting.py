@@ -9,7 +9,7 @@ from sklearn.base import clone
 
 from gapless.learners.base import OutputByOutput, TakesWeights, weighable
 from gapless.learners.random_layer import relm
-from gapless.recording import Array
+from gapless.trip.recording import Array
 
 _FULL: Final = 2.5
 """c1: trusted up to here [robust standard deviations] (Deng et al. 2009, after Suykens et al. 2002)."""

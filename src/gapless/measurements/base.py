@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import ClassVar, NamedTuple, Protocol, Self
 
-from gapless.events import Motion, Reading
 from gapless.inertial.belief import Belief
-from gapless.recording import Array
+from gapless.trip.events import Motion, Reading
+from gapless.trip.recording import Array
 
 
 class Observation(NamedTuple):

@@ -12,11 +12,11 @@ from numpy.typing import NDArray
 from gapless import earth
 from gapless._numba import inline, kernel
 from gapless.attitude import matrix_rows
-from gapless.events import Reading
 from gapless.inertial.belief import Belief
 from gapless.inertial.propagate import PREV_DT, PREV_THETA, PREV_VEL
 from gapless.measurements.base import Observation
-from gapless.recording import Array
+from gapless.trip.events import Reading
+from gapless.trip.recording import Array
 
 LEVER = 3
 """Where `Layout.offsets` keeps the lever arm."""

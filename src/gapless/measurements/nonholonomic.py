@@ -8,10 +8,10 @@ from typing import ClassVar, Self
 
 import numpy as np
 
-from gapless.events import Motion, Reading
 from gapless.inertial.belief import Belief
 from gapless.measurements.base import Constraint, Observation
 from gapless.measurements.vehicle import slip
+from gapless.trip.events import Motion, Reading
 
 
 @dataclass

@@ -6,10 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from gapless.events import Reading
 from gapless.inertial.belief import Belief
 from gapless.measurements.base import Observation
 from gapless.measurements.vehicle import odometer
+from gapless.trip.events import Reading
 
 
 @dataclass(frozen=True)

@@ -8,11 +8,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from gapless.events import Reading
 from gapless.inertial.belief import Belief, inject
 from gapless.inertial.layout import ROW
 from gapless.inertial.points import factor, linearised, scatter
 from gapless.measurements.base import Observation, Sensor
+from gapless.trip.events import Reading
 
 
 @dataclass(frozen=True)

@@ -17,13 +17,13 @@ import numpy as np
 
 from gapless._numba import inline, kernel
 from gapless.attitude import matrix_rows
-from gapless.events import Motion, Reading
 from gapless.inertial.belief import Belief
 from gapless.inertial.layout import ROW
 from gapless.inertial.trail import GRAVITY
 from gapless.measurements.base import Constraint, Observation
 from gapless.measurements.zero_velocity import zero_velocity
-from gapless.recording import Array
+from gapless.trip.events import Motion, Reading
+from gapless.trip.recording import Array
 from gapless.units import DEG
 
 SLOTS = 15

@@ -15,7 +15,7 @@ from gapless import earth
 from gapless._numba import inline, kernel
 from gapless.attitude import matrix_rows
 from gapless.inertial.propagate import PREV_DT, PREV_THETA, PREV_VEL
-from gapless.recording import Array
+from gapless.trip.recording import Array
 
 LEAST = 0.05
 """What is left of the lateral standard deviation at a crawl [m/s]."""

@@ -7,7 +7,7 @@ import numpy as np
 from gapless import earth
 from gapless._numba import kernel
 from gapless.attitude import matrix_rows
-from gapless.recording import Array
+from gapless.trip.recording import Array
 
 
 @kernel

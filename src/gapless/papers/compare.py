@@ -15,7 +15,7 @@ from gapless.papers.experiment import Results
 from gapless.papers.jobs import Sample
 from gapless.papers.model import Experiment
 from gapless.papers.published import Claim, Published
-from gapless.recording import Array
+from gapless.trip.recording import Array
 
 YES, NO, OPEN, NOT_RUN = "yes", "NO", "open", "not run"
 """Whether the order is the paper's: shown, shown to be the other way round, neither; or not run."""

@@ -7,15 +7,15 @@ from dataclasses import replace
 import numpy as np
 
 from gapless.evaluation import score
-from gapless.motion import offset_ned
 from gapless.papers.jobs import BROKEN, Job, Outcome, Track, keep, navigate, told
 from gapless.papers.model import Drive, Method
 from gapless.papers.start import fuse_from
-from gapless.recording import Recording
 from gapless.sensors import grade
 from gapless.simulate import simulate, spikes
-from gapless.solution import Solution
 from gapless.systems.recipe import System
+from gapless.trip.motion import offset_ned
+from gapless.trip.recording import Recording
+from gapless.trip.solution import Solution
 
 
 def make(drive: Drive, seed: int) -> Recording:

@@ -10,14 +10,14 @@ from gapless.evaluation import Errors, Scores
 from gapless.laboratory.study import Source
 from gapless.papers.measure import measure
 from gapless.papers.model import SAME_CLOCK, WHITE, Experiment, Method, Window
-from gapless.recording import Array, Recording
 from gapless.scenarios import Outage
-from gapless.solution import Solution
 from gapless.systems.adjust import changed
 from gapless.systems.fuse import fuse
 from gapless.systems.library import load
 from gapless.systems.recipe import System
 from gapless.systems.smooth import smooth
+from gapless.trip.recording import Array, Recording
+from gapless.trip.solution import Solution
 
 BROKEN: Final = (GaplessError, ValueError, ArithmeticError)
 """What ends a method on a drive, and not the others: it cannot run, or its numbers have run away. A method

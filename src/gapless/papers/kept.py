@@ -19,9 +19,9 @@ import numpy as np
 from gapless.io.writers.atomic import atomic
 from gapless.laboratory.study import Stored
 from gapless.papers.jobs import Job, Outcome
-from gapless.recording import Array
 from gapless.sweeps.run import versions
 from gapless.sweeps.sources import fingerprint
+from gapless.trip.recording import Array
 
 FOLDER: Final = "unfinished"
 """Where they are, in the folder of the results."""

@@ -9,7 +9,7 @@ import numpy as np
 
 from gapless.evaluation import Errors
 from gapless.evaluation.statistics import rms
-from gapless.recording import Array
+from gapless.trip.recording import Array
 from gapless.units import DEG
 
 NED: Final = ("north", "east", "down")

@@ -7,11 +7,11 @@ from typing import Final
 
 from gapless.evaluation import score
 from gapless.laboratory.study import ladder
-from gapless.motion import first_motion
 from gapless.papers.jobs import BROKEN, Job, Outcome, Ready, keep, navigate, told
 from gapless.papers.model import Window
-from gapless.recording import Recording
 from gapless.scenarios import Outage
+from gapless.trip.motion import first_motion
+from gapless.trip.recording import Recording
 
 BETWEEN: Final = 180.0
 """From the end of an outage to the start of the next [s]: time to settle, and to learn."""

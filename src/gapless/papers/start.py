@@ -9,13 +9,13 @@ import numpy as np
 
 from gapless import attitude
 from gapless.alignment.coarse import Aligner, Start
-from gapless.events import Reading
-from gapless.recording import Array, Recording
+from gapless.fold.settings import Settings
 from gapless.scenarios import Outage
-from gapless.settings import Settings
-from gapless.solution import Solution
 from gapless.systems.fuse import fuse
 from gapless.systems.recipe import System
+from gapless.trip.events import Reading
+from gapless.trip.recording import Array, Recording
+from gapless.trip.solution import Solution
 
 
 @dataclass

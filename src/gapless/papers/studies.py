@@ -13,8 +13,8 @@ from gapless.evaluation.statistics import rms
 from gapless.papers.drives import make
 from gapless.papers.jobs import navigate, prepare
 from gapless.papers.model import Experiment, Method
-from gapless.recording import Array, Imu, Recording
 from gapless.scenarios import Outage
+from gapless.trip.recording import Array, Imu, Recording
 
 FROM, UNTIL = 400.0, 900.0
 """The stretch of a drive that is denoised [s]: that of liu2019, Figure 6."""
@@ -181,7 +181,7 @@ def fitness(experiment: Experiment) -> Fitness:
 
 def _increments(recording: Recording, begin: float, end: float) -> tuple[Array, Array]:
     """Integrated force and rate over each GNSS epoch, and how far the fixes went."""
-    from gapless.motion import offset_ned
+    from gapless.trip.motion import offset_ned
 
     fixes = recording.gnss.slice(recording.start + begin, recording.start + end)
     imu, steps = recording.imu, np.searchsorted(recording.imu.time, fixes.time + 1e-6)

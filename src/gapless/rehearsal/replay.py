@@ -7,11 +7,11 @@ from dataclasses import replace
 from functools import cached_property
 from typing import Final, NamedTuple
 
-from gapless.events import Event, ImuBlock
-from gapless.manner import Manner
-from gapless.navigator import Navigator
+from gapless.fold.manner import Manner
+from gapless.fold.navigator import Navigator
 from gapless.rehearsal.judge import Rehearsed, Trial
 from gapless.rehearsal.stretch import Stretch
+from gapless.trip.events import Event, ImuBlock
 
 ROWS: Final = 1.0
 """Rows of a replay are so far apart [s]: what is looked for is how far it went astray in a minute."""

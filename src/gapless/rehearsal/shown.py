@@ -6,8 +6,8 @@ import math
 from collections.abc import Collection, Sequence
 from itertools import accumulate
 
-from gapless.exhibits import Candidate, Chosen, Performance, Rehearsals, Standing
 from gapless.rehearsal.judge import Rehearsed, Score, choose
+from gapless.trip.exhibits import Candidate, Chosen, Performance, Rehearsals, Standing
 
 
 def shown(

@@ -15,17 +15,17 @@ from typing import Any, Final, Self
 
 import numpy as np
 
-from gapless.events import Event, ImuBlock
-from gapless.exhibits import Rehearsals
-from gapless.journal import Journal
-from gapless.manner import Manner
-from gapless.navigator import Navigator
+from gapless.fold.journal import Journal
+from gapless.fold.manner import Manner
+from gapless.fold.navigator import Navigator
+from gapless.fold.settings import Settings
 from gapless.rehearsal.judge import Choice, Rehearsed, choose
 from gapless.rehearsal.replay import Attempt, Replay
 from gapless.rehearsal.shown import shown
 from gapless.rehearsal.stretch import Stretch
-from gapless.settings import Settings
-from gapless.solution import Decision
+from gapless.trip.events import Event, ImuBlock
+from gapless.trip.exhibits import Rehearsals
+from gapless.trip.solution import Decision
 
 SETTLE: Final = 45.0
 """After its alignment a navigator is left alone for so long [s]: bridges have something to say by then."""

@@ -8,11 +8,11 @@ from itertools import groupby
 import numpy as np
 
 from gapless import earth
-from gapless.events import Event, ImuBlock
-from gapless.journal import Journal
-from gapless.navigator import Navigator
-from gapless.recording import Array, Trajectory
+from gapless.fold.journal import Journal
+from gapless.fold.navigator import Navigator
 from gapless.rehearsal.judge import AGES, REFERENCE
+from gapless.trip.events import Event, ImuBlock
+from gapless.trip.recording import Array, Trajectory
 
 
 @dataclass

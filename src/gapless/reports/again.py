@@ -12,11 +12,11 @@ import numpy as np
 from gapless.errors import ConfigError
 from gapless.io.writers.atomic import atomic
 from gapless.io.writers.table import SD_COLUMNS
-from gapless.recording import Array, Trajectory
 from gapless.reports.background import Feature
 from gapless.reports.numbers import known
 from gapless.reports.report import page
-from gapless.solution import Solution
+from gapless.trip.recording import Array, Trajectory
+from gapless.trip.solution import Solution
 from gapless.units import DEG
 
 LEFT_OUT = "errors, biases and innovations over time, fixes, reference and ellipses"

@@ -10,8 +10,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from gapless.errors import ConfigError
-from gapless.motion import offset_ned
-from gapless.recording import Array
+from gapless.trip.motion import offset_ned
+from gapless.trip.recording import Array
 from gapless.units import DEG
 
 _AROUND = 1.0

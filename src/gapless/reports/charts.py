@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 
 from gapless.evaluation import Scores
-from gapless.recording import Array
 from gapless.reports.decimate import POINTS, Stretch, envelope, scatter
 from gapless.reports.pack import packed, packed_times
 from gapless.reports.quantities import Quantity, channel, state
-from gapless.solution import Innovations, Solution
+from gapless.trip.recording import Array
+from gapless.trip.solution import Innovations, Solution
 from gapless.units import DEG
 
 Range = tuple[float, float]

@@ -10,7 +10,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from gapless.recording import Array
+from gapless.trip.recording import Array
 
 Stretch = tuple[float, float]
 POINTS: Final = 8000

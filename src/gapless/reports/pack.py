@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from gapless.recording import Array
+from gapless.trip.recording import Array
 
 _LARGEST = 60000.0
 """Of half precision's 65504, with room for rounding."""

@@ -12,13 +12,13 @@ import numpy as np
 
 from gapless.evaluation import Scores, chi_square_quantile
 from gapless.evaluation.errors import gnss_truth
-from gapless.recording import Array, Recording, Trajectory
 from gapless.reports.background import Feature, east_north, placed
 from gapless.reports.charts import charts, decimated, focus
 from gapless.reports.decimate import POINTS, simplify
 from gapless.reports.pack import rounded
 from gapless.scenarios import Outage, withheld
-from gapless.solution import Solution
+from gapless.trip.recording import Array, Recording, Trajectory
+from gapless.trip.solution import Solution
 
 _ELLIPSES = 24
 """Ellipses drawn along one outage."""

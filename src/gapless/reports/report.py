@@ -7,14 +7,14 @@ from pathlib import Path
 from typing import Any
 
 from gapless.evaluation import Scores
-from gapless.recording import Recording
 from gapless.reports import rehearsals, tables, wheels
 from gapless.reports.background import Feature
 from gapless.reports.numbers import distance, duration, known
 from gapless.reports.page import Content, fill, render, section
 from gapless.reports.payload import payload
 from gapless.reports.summary import summarise
-from gapless.solution import Solution
+from gapless.trip.recording import Recording
+from gapless.trip.solution import Solution
 
 _SECTIONS = (
     ("outages", "Outages", tables.outages),

@@ -10,12 +10,12 @@ from typing import Any
 import numpy as np
 
 from gapless.evaluation import Scores, consistency
-from gapless.exhibits import Candidate, Heard, Rehearsals, WheelsHeard
-from gapless.motion import horizontal_velocity, motion
-from gapless.recording import Trajectory
 from gapless.reports.numbers import known, measured, plain
 from gapless.reports.quantities import state
-from gapless.solution import Decision, Innovations, Solution, observability
+from gapless.trip.exhibits import Candidate, Heard, Rehearsals, WheelsHeard
+from gapless.trip.motion import horizontal_velocity, motion
+from gapless.trip.recording import Trajectory
+from gapless.trip.solution import Decision, Innovations, Solution, observability
 from gapless.units import DEG
 from gapless.version import __version__
 

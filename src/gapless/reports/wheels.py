@@ -8,10 +8,10 @@ from typing import Any
 
 import numpy as np
 
-from gapless.exhibits import Heard
-from gapless.recording import Array, Gnss
 from gapless.reports.charts import chart
 from gapless.reports.numbers import known, number
+from gapless.trip.exhibits import Heard
+from gapless.trip.recording import Array, Gnss
 
 DECIBEL = 10.0 / math.log(10.0)
 """Of a natural logarithm of power."""

@@ -11,8 +11,8 @@ import numpy as np
 from numpy.random import Generator
 from numpy.typing import NDArray
 
-from gapless.motion import displace
-from gapless.recording import Array, Gnss
+from gapless.trip.motion import displace
+from gapless.trip.recording import Array, Gnss
 
 _PER_SECOND: Final = 0.1
 """A velocity goes wrong by this many m/s for each metre of its position."""

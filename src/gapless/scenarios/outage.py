@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from gapless.recording import Array, Gnss, Recording
 from gapless.scenarios.effects import SILENT, Effect
+from gapless.trip.recording import Array, Gnss, Recording
 
 Drive = Recording | float
 """A recording, or its duration [s] where no plan has to look into it."""

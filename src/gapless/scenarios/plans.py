@@ -15,10 +15,10 @@ from numpy.typing import NDArray
 
 from gapless.attitude import wrap
 from gapless.errors import ConfigError
-from gapless.motion import Motion, horizontal_velocity, motion
-from gapless.recording import Gnss, Recording
 from gapless.scenarios.effects import SILENT, Effect
 from gapless.scenarios.outage import Drive, Outage, duration_of, seconds, suffix
+from gapless.trip.motion import Motion, horizontal_velocity, motion
+from gapless.trip.recording import Gnss, Recording
 from gapless.units import DEG
 
 _APART: Final = 30.0

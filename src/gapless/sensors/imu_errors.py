@@ -13,9 +13,9 @@ import numpy as np
 from numpy.random import Generator
 from numpy.typing import NDArray
 
-from gapless.recording import Imu
 from gapless.sensors.grades import Grade
 from gapless.sensors.noise import band_limited, gauss_markov, random_walk
+from gapless.trip.recording import Imu
 
 Array = NDArray[np.float64]
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from gapless.recording import Imu
+from gapless.trip.recording import Imu
 
 FASTEST_MOTION = 40.0
 """Below this sample rate [Hz] the vehicle's own motion changes from sample to sample."""

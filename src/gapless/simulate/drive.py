@@ -9,7 +9,6 @@ import numpy as np
 from numpy.random import Generator
 
 from gapless.errors import ConfigError
-from gapless.recording import Recording
 from gapless.sensors.grades import Grade
 from gapless.sensors.grades import grade as named_grade
 from gapless.sensors.imu_errors import corrupt
@@ -20,6 +19,7 @@ from gapless.simulate.profiles import fit
 from gapless.simulate.profiles import profile as named_profile
 from gapless.simulate.receivers import STANDARD, Receiver, WheelSensor, fixes, odometer
 from gapless.simulate.vibration import vibrate
+from gapless.trip.recording import Recording
 from gapless.units import DEG
 
 ORIGIN = (32.05 * DEG, 118.79 * DEG, 20.0)

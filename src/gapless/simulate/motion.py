@@ -14,8 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gapless import attitude, earth
-from gapless.recording import Imu, Trajectory
 from gapless.simulate.path import Path, gauss_legendre
+from gapless.trip.recording import Imu, Trajectory
 
 Array = NDArray[np.float64]
 Triple = tuple[float, float, float]

@@ -9,11 +9,11 @@ import numpy as np
 from numpy.random import Generator
 from numpy.typing import NDArray
 
-from gapless.motion import displace
-from gapless.recording import Gnss, Odometer
 from gapless.sensors.noise import gauss_markov
 from gapless.simulate.motion import Vehicle, point
 from gapless.simulate.path import Path, gauss_legendre
+from gapless.trip.motion import displace
+from gapless.trip.recording import Gnss, Odometer
 
 Array = NDArray[np.float64]
 Triple = tuple[float, float, float]

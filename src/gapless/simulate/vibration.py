@@ -11,12 +11,12 @@ from numpy.random import Generator
 from numpy.typing import NDArray
 
 from gapless.errors import ConfigError
-from gapless.recording import Imu
 from gapless.sensors.noise import band_limited
 from gapless.simulate.chassis import Chassis, Engine, Road, Slip, WheelComb
 from gapless.simulate.harmonics import Harmonic
 from gapless.simulate.motion import AT_AXLE, Vehicle
 from gapless.simulate.path import Path
+from gapless.trip.recording import Imu
 
 Array = NDArray[np.float64]
 

@@ -12,9 +12,9 @@ from msgspec import Struct
 
 from gapless.errors import RecordingError, SweepError
 from gapless.io import read
-from gapless.recording import Recording
 from gapless.simulate import simulate
 from gapless.sweeps.places import held
+from gapless.trip.recording import Recording
 
 
 class Simulated(Struct, frozen=True, tag="simulated", tag_field="kind"):

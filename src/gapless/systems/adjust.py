@@ -9,12 +9,12 @@ import msgspec
 from msgspec.structs import replace
 
 from gapless.errors import ConfigError
-from gapless.recording import Recording
 from gapless.sensors import grade_names
 from gapless.systems.learning import BridgeUse
 from gapless.systems.library import checked, load, names
 from gapless.systems.recipe import Clock, DenoiseUse, System
 from gapless.systems.values import Offset
+from gapless.trip.recording import Recording
 
 PARTS: Final = {"bridge": BridgeUse(), "denoise": DenoiseUse()}
 """Parts that a system can do without, and what is left then."""

@@ -10,6 +10,7 @@ import numpy as np
 from gapless.alignment.coarse import Aligner
 from gapless.errors import ConfigError
 from gapless.filters.adaptation.registry import KINDS, RULES, chain
+from gapless.fold.settings import Settings
 from gapless.inertial.layout import Layout
 from gapless.measurements.base import Constraint, Sensor
 from gapless.measurements.gnss import Position, Velocity
@@ -17,12 +18,11 @@ from gapless.measurements.nonholonomic import NonHolonomic
 from gapless.measurements.odometer import Odometer
 from gapless.measurements.spread import Spread
 from gapless.measurements.stillness import Stillness
-from gapless.recording import Array, Recording
 from gapless.sensors import grade
-from gapless.settings import Settings
 from gapless.systems.adjust import named
 from gapless.systems.learning import bridges
 from gapless.systems.recipe import Imu, System
+from gapless.trip.recording import Array, Recording
 from gapless.units import DEG
 
 TURN = 5.0

@@ -11,8 +11,8 @@ import numpy as np
 from gapless.alignment.clock import Offset
 from gapless.alignment.turns import far_off, turns
 from gapless.errors import RecordingError
-from gapless.recording import Recording
-from gapless.solution import Decision
+from gapless.trip.recording import Recording
+from gapless.trip.solution import Decision
 
 VAGUE = 0.1
 """An offset is not believed by itself where its standard deviation is larger [s]."""

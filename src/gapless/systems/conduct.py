@@ -6,15 +6,15 @@ from collections.abc import Callable
 from dataclasses import replace
 
 from gapless.errors import ConfigError
-from gapless.manner import Manner
-from gapless.navigator import Navigator
-from gapless.recording import Recording
+from gapless.fold.manner import Manner
+from gapless.fold.navigator import Navigator
+from gapless.fold.settings import Settings
 from gapless.rehearsal.stage import Plan, Rehearsing
-from gapless.settings import Settings
 from gapless.systems.adjust import changed
 from gapless.systems.build import candidates, settings
 from gapless.systems.decide import Decided
 from gapless.systems.recipe import System
+from gapless.trip.recording import Recording
 
 Folding = Navigator | Rehearsing
 """What events are folded into."""

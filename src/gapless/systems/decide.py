@@ -10,15 +10,15 @@ from msgspec.structs import replace
 
 from gapless import earth
 from gapless.alignment.clock import Curve, Offset, offset, path_curve, velocity_curve
-from gapless.feed import events
-from gapless.navigator import Navigator
-from gapless.recording import Array, Recording, Trajectory
+from gapless.fold.feed import events
+from gapless.fold.navigator import Navigator
 from gapless.sensors.vibration import gyro_density
-from gapless.solution import Decision
 from gapless.systems.build import budget, lever_arm, settings, stamps
 from gapless.systems.clocks import Clocks, base_offset, believed, clock_decision
 from gapless.systems.learning import BridgeUse
 from gapless.systems.recipe import Adaptation, RehearsalUse, System
+from gapless.trip.recording import Array, Recording, Trajectory
+from gapless.trip.solution import Decision
 from gapless.units import DEG
 
 CHANNELS = ("position", "velocity", "odometer")

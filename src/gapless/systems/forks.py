@@ -12,16 +12,16 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
-from gapless.feed import events
-from gapless.recording import Recording, Trajectory
+from gapless.fold.feed import events
 from gapless.scenarios import Outage
-from gapless.solution import Solution
 from gapless.systems.adjust import graded
 from gapless.systems.build import stamps
 from gapless.systems.conduct import Folding, navigator_for
 from gapless.systems.decide import Decided
 from gapless.systems.fuse import collect, fold, withhold_from
 from gapless.systems.recipe import System
+from gapless.trip.recording import Recording, Trajectory
+from gapless.trip.solution import Solution
 
 LEAD = 2.0
 """A piece begins so long before its outage [s], and ends so long after: clocks differ by less."""

@@ -8,19 +8,19 @@ from dataclasses import replace
 import numpy as np
 
 from gapless.errors import AlignmentError
-from gapless.events import Event, ImuBlock
-from gapless.feed import events
-from gapless.journal import Journal
-from gapless.recording import Recording
+from gapless.fold.feed import events
+from gapless.fold.journal import Journal
 from gapless.rehearsal.stage import Rehearsing
 from gapless.scenarios import Outage, withhold
-from gapless.solution import Decision, Solution
 from gapless.systems.adjust import graded
 from gapless.systems.build import stamps
 from gapless.systems.conduct import Finish, Folding, as_built, navigator_for
 from gapless.systems.decide import Decided, decide, static_decisions
 from gapless.systems.prepare import denoise_decisions, prepared
 from gapless.systems.recipe import System
+from gapless.trip.events import Event, ImuBlock
+from gapless.trip.recording import Recording
+from gapless.trip.solution import Decision, Solution
 
 Progress = Callable[[float], None]
 """Told the time that navigation has reached [s after the first sample]."""

@@ -7,9 +7,9 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from gapless.errors import ConfigError, registered_elsewhere
-from gapless.recording import Imu, Recording
-from gapless.solution import Decision
 from gapless.systems.recipe import DenoiseUse, System
+from gapless.trip.recording import Imu, Recording
+from gapless.trip.solution import Decision
 
 if TYPE_CHECKING:
     from gapless.denoise import Denoiser

@@ -9,16 +9,15 @@ from itertools import pairwise
 import numpy as np
 
 from gapless.errors import ConfigError
-from gapless.feed import events, in_order, merged
 from gapless.filters.adaptation.registry import KINDS, bends_gain
 from gapless.filters.smoother import Adjoint, Correction
+from gapless.fold.feed import events, in_order, merged
+from gapless.fold.journal import Journal
+from gapless.fold.navigator import Navigator, Settings
+from gapless.fold.tape import Row, Tape
 from gapless.inertial.belief import inject
-from gapless.journal import Journal
-from gapless.navigator import Navigator, Settings
-from gapless.recording import Recording
 from gapless.rehearsal.stage import Rehearsing
 from gapless.scenarios import Outage
-from gapless.solution import Decision, Solution, first_deviations
 from gapless.systems.adjust import graded
 from gapless.systems.build import stamps
 from gapless.systems.conduct import Folding, navigator_for, settings_for
@@ -26,7 +25,8 @@ from gapless.systems.decide import decide
 from gapless.systems.fuse import Progress, collect, fold, withhold_from
 from gapless.systems.prepare import prepared
 from gapless.systems.recipe import System
-from gapless.tape import Row, Tape
+from gapless.trip.recording import Recording
+from gapless.trip.solution import Decision, Solution, first_deviations
 
 SEGMENT = 60.0
 """Seconds that are kept in memory at once; the filter goes through each a second time."""

@@ -9,8 +9,8 @@ import numpy as np
 from gapless import attitude
 from gapless.errors import ConfigError
 from gapless.measurements.vehicle import axes
-from gapless.recording import Array
-from gapless.solution import Decision, Solution
+from gapless.trip.recording import Array
+from gapless.trip.solution import Decision, Solution
 from gapless.units import DEG
 
 

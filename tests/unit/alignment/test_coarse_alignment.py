@@ -5,9 +5,9 @@ import pytest
 
 from gapless import attitude
 from gapless.alignment.coarse import Aligner
-from gapless.events import ImuBlock, Reading
-from gapless.feed import events
+from gapless.fold.feed import events
 from gapless.simulate import Receiver, Segment, Vehicle, simulate
+from gapless.trip.events import ImuBlock, Reading
 from gapless.units import DEG
 
 NONE = (0.0, 0.0, 0.0)

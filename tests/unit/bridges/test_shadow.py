@@ -8,15 +8,15 @@ import pytest
 
 from gapless import attitude, earth
 from gapless.bridges.shadow import Shadow, difference
-from gapless.events import Motion
-from gapless.feed import events
+from gapless.fold.feed import events
+from gapless.fold.navigator import Navigator
 from gapless.inertial.coast import STATE
-from gapless.navigator import Navigator
 from gapless.scenarios import Outage, withhold
 from gapless.simulate import simulate
 from gapless.systems.adjust import named
 from gapless.systems.build import settings
 from gapless.systems.recipe import System
+from gapless.trip.events import Motion
 
 MOUNTING = (np.zeros(2), np.full(2, 0.01))
 

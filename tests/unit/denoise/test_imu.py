@@ -9,8 +9,8 @@ from gapless.denoise import Emd, EmdCiit, LowPass, Windowed, denoised
 from gapless.denoise.compare import CHANNELS, compare, whole_and_causal
 from gapless.denoise.imu import stretches
 from gapless.errors import RecordingError
-from gapless.recording import Imu
 from gapless.simulate import simulate
+from gapless.trip.recording import Imu
 
 
 @pytest.fixture(scope="module")

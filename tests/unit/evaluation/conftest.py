@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from gapless.recording import Gnss, Imu, Recording, Trajectory
+from gapless.trip.recording import Gnss, Imu, Recording, Trajectory
 
 ORIGIN = np.array([np.radians(44.23), np.radians(-76.49), 95.0])
 

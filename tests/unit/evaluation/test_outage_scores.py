@@ -6,8 +6,8 @@ import pytest
 from gapless import earth
 from gapless.evaluation import first_motion, pool_spread, score
 from gapless.evaluation.outages import BEFORE_MOTION, IMU_GAP, LITTLE_TRUTH, NO_MOTION
-from gapless.recording import Trajectory
-from gapless.solution import Decision, Solution
+from gapless.trip.recording import Trajectory
+from gapless.trip.solution import Decision, Solution
 
 START = 5000.0
 SPEED = 10.0

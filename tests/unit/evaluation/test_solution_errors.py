@@ -5,8 +5,8 @@ import pytest
 from gapless import earth
 from gapless.evaluation.errors import at_antenna, gnss_truth, solution_errors
 from gapless.evaluation.interpolation import interpolate
-from gapless.motion import offset_ned
-from gapless.recording import Gnss
+from gapless.trip.motion import offset_ned
+from gapless.trip.recording import Gnss
 
 
 def straight(origin, time, north=0.0, east=0.0):

@@ -17,8 +17,8 @@ import pytest
 from gapless import io
 from gapless.errors import ConfigError, MissingExtraError, RecordingError
 from gapless.io.writers.gpx import write_gpx
-from gapless.recording import Trajectory
-from gapless.solution import Solution
+from gapless.trip.recording import Trajectory
+from gapless.trip.solution import Solution
 from gapless.units import DEG
 
 NASTY = 'Trip <1> & "two" \x07 é 🚗'

@@ -4,11 +4,11 @@ from functools import cache
 import numpy as np
 import pytest
 
-from gapless.recording import Recording
 from gapless.scenarios import plan
 from gapless.simulate import Receiver, Vehicle, WheelSensor, simulate
 from gapless.systems.fuse import decide_before, fuse
 from gapless.systems.library import load
+from gapless.trip.recording import Recording
 from gapless.units import DEG
 
 CAR = Vehicle(imu=(1.2, 0.3, -0.6), antenna=(0.4, 0.1, -1.5), mounting=(0.0, 2.0 * DEG, -3.0 * DEG))

@@ -6,22 +6,22 @@ import numpy as np
 import pytest
 
 from gapless.errors import LaboratoryError
-from gapless.feed import events
+from gapless.fold.feed import events
 from gapless.laboratory import recipes
 from gapless.laboratory.bench import bench
 from gapless.laboratory.jobs import Job, execute
 from gapless.laboratory.methods import Function
 from gapless.laboratory.recipes import Recipe
 from gapless.laboratory.study import scenario
-from gapless.motion import displace
-from gapless.recording import Trajectory
 from gapless.reports import summarise
 from gapless.scenarios import plan
 from gapless.simulate import WheelSensor, simulate
-from gapless.solution import Solution
 from gapless.systems import forks
 from gapless.systems.decide import decide
 from gapless.systems.fuse import fuse
+from gapless.trip.motion import displace
+from gapless.trip.recording import Trajectory
+from gapless.trip.solution import Solution
 
 PLAN = "every=40,length=15,first=110"
 

@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 
 from gapless.laboratory.prefix import first_difference, samples, spoil
-from gapless.motion import offset_ned
-from gapless.recording import Trajectory
 from gapless.scenarios import Outage, plan, withhold
+from gapless.trip.motion import offset_ned
+from gapless.trip.recording import Trajectory
 
 
 def rows(n=100):

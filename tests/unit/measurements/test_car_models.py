@@ -5,13 +5,13 @@ import pytest
 
 from gapless import attitude
 from gapless.earth import gravity
-from gapless.events import Motion, Reading
 from gapless.inertial import propagate as at
 from gapless.inertial.belief import Belief
 from gapless.inertial.layout import Layout
 from gapless.inertial.trail import Trail
 from gapless.measurements.nonholonomic import NonHolonomic
 from gapless.measurements.odometer import Odometer
+from gapless.trip.events import Motion, Reading
 
 LAYOUT = Layout(("mounting", "axle", "odometer_scale", "odometer_offset"))
 

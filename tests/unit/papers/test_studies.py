@@ -5,7 +5,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from gapless.motion import offset_ned
 from gapless.papers import studies
 from gapless.papers.drives import make
 from gapless.papers.experiment import Reproduction
@@ -13,6 +12,7 @@ from gapless.papers.figures import figures
 from gapless.papers.liu2019 import CHANNELS
 from gapless.papers.model import Receiver, Window
 from gapless.papers.tables import tables
+from gapless.trip.motion import offset_ned
 
 MILLIMETRE = (0.001, 0.001, 0.001)
 EXACT = Receiver(

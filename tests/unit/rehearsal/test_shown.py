@@ -6,9 +6,9 @@ import math
 
 import pytest
 
-from gapless.exhibits import Candidate
 from gapless.rehearsal.judge import Rehearsed, Trial, choose
 from gapless.rehearsal.shown import shown
+from gapless.trip.exhibits import Candidate
 
 BRIDGES = {"wheels": (0,)}
 

@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 
 from gapless.errors import ConfigError
-from gapless.events import ImuBlock
-from gapless.feed import events
-from gapless.navigator import Navigator
+from gapless.fold.feed import events
+from gapless.fold.navigator import Navigator
 from gapless.rehearsal.judge import Choice
 from gapless.rehearsal.stage import SETTLE, Plan, Rehearsing
 from gapless.scenarios import Outage, withhold
@@ -17,6 +16,7 @@ from gapless.systems.adjust import changed, named
 from gapless.systems.build import settings
 from gapless.systems.conduct import navigator_for
 from gapless.systems.decide import Decided
+from gapless.trip.events import ImuBlock
 
 MOUNTING = (np.zeros(2), np.full(2, 0.02))
 PLAN = Plan({"wheels": (0,)}, every=10.0, length=20.0)

@@ -8,8 +8,8 @@ from __future__ import annotations
 import numpy as np
 
 from gapless import earth
-from gapless.recording import Gnss, Imu, Note, Recording, Trajectory
-from gapless.solution import Decision, Innovations, Solution
+from gapless.trip.recording import Gnss, Imu, Note, Recording, Trajectory
+from gapless.trip.solution import Decision, Innovations, Solution
 
 START = 1000.0
 ORIGIN = np.array([np.radians(44.23), np.radians(-76.49), 95.0])

@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 from fake_drive import START, make
 
-from gapless.exhibits import Candidate, Chosen, Heard, Performance, Rehearsals, Standing, WheelsHeard
 from gapless.reports import rehearsals, wheels
 from gapless.reports.report import page
 from gapless.reports.summary import summarise
+from gapless.trip.exhibits import Candidate, Chosen, Heard, Performance, Rehearsals, Standing, WheelsHeard
 
 NOBODY, WHEELS = Candidate("", ""), Candidate("wheels", "")
 

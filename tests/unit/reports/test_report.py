@@ -10,13 +10,13 @@ import pymap3d
 import pytest
 
 from gapless.evaluation import score
-from gapless.recording import Note
 from gapless.reports import write_report
 from gapless.reports.decimate import POINTS
 from gapless.reports.page import asset
 from gapless.reports.payload import payload
 from gapless.reports.report import page
-from gapless.solution import Decision
+from gapless.trip.recording import Note
+from gapless.trip.solution import Decision
 
 SVG_NAMESPACE = "http://www.w3.org/2000/svg"
 """A name, not an address: nothing is fetched from it."""

@@ -8,7 +8,7 @@ from scipy import stats
 from gapless import __version__
 from gapless.reports import summarise, summary_lines
 from gapless.reports.summary import channel_statistics, decision_value
-from gapless.solution import Decision, Innovations
+from gapless.trip.solution import Decision, Innovations
 
 
 @pytest.fixture(scope="module")

@@ -5,8 +5,8 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy import stats
 
-from gapless.recording import Imu
 from gapless.sensors import allan_deviation, correct, corrupt, grade, grade_names, read_allan
+from gapless.trip.recording import Imu
 
 N, DT = 60_000, 0.01
 PERFECT = grade("perfect")

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from gapless.recording import Imu
 from gapless.sensors.vibration import gyro_density
+from gapless.trip.recording import Imu
 
 
 def log(rate: float, density: float, turn: float = 0.0) -> Imu:

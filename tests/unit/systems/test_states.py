@@ -9,10 +9,10 @@ from gapless.reports.summary import summarise
 from gapless.reports.tables import states as states_table
 from gapless.reports.terminal import summary_lines
 from gapless.simulate import Receiver, Vehicle, WheelSensor, simulate
-from gapless.solution import observability
 from gapless.systems.fuse import fuse
 from gapless.systems.library import parse
 from gapless.systems.smooth import smooth
+from gapless.trip.solution import observability
 
 RTK = Receiver(
     position_white=(0.02, 0.02, 0.04), position_correlated=(0.0, 0.0, 0.0), velocity=(0.1, 0.1, 0.1)

@@ -5,9 +5,9 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from gapless.errors import ConfigError
-from gapless.recording import Trajectory
-from gapless.solution import Solution
 from gapless.systems.vehicle import car_euler, vehicle_attitude
+from gapless.trip.recording import Trajectory
+from gapless.trip.solution import Solution
 
 
 @pytest.fixture

@@ -12,7 +12,7 @@ from typing import Any, ClassVar, Literal, NamedTuple, Protocol, Self
 
 import numpy as np
 
-from gapless.recording import Array
+from gapless.trip.recording import Array
 
 Role = Literal["noise", "process", "recovery", "test", "weight"]
 

@@ -10,7 +10,7 @@ from msgspec import Meta, Struct
 
 from gapless.filters.adaptation.base import Innovation, Role, Verdict
 from gapless.filters.quantile import chi_square_quantile
-from gapless.recording import Array
+from gapless.trip.recording import Array
 
 NEWTON = 50
 """Steps at most; convex and falling, the function is met in a handful."""

@@ -10,7 +10,7 @@ import numpy as np
 from msgspec import Meta, Struct
 
 from gapless.filters.adaptation.base import Innovation, Role, Verdict
-from gapless.recording import Array
+from gapless.trip.recording import Array
 
 MEDIAN = 0.6745
 """Median of the absolute value of a standard normal."""

@@ -15,7 +15,7 @@ from msgspec import Meta, Struct
 
 from gapless.filters.adaptation.base import Innovation, Role, Verdict
 from gapless.filters.quantile import chi_square_quantile
-from gapless.recording import Array
+from gapless.trip.recording import Array
 
 SOFT = {1: 6.63, 2: 9.21, 3: 11.34, 6: 16.81}
 """99 % quantiles of chi-square by dimension: beyond them an observation is surprising."""

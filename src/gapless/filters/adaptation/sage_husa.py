@@ -9,7 +9,7 @@ import numpy as np
 from msgspec import Meta, Struct
 
 from gapless.filters.adaptation.base import Innovation, Role, Verdict, whitened
-from gapless.recording import Array
+from gapless.trip.recording import Array
 
 
 class SageHusaTable(Struct, forbid_unknown_fields=True, frozen=True):

@@ -10,7 +10,7 @@ from gapless.errors import RecordingError
 from gapless.io.readers.base import Reader
 from gapless.io.readers.folder import Folder
 from gapless.io.readers.kfgins import KfGins
-from gapless.recording import Recording
+from gapless.trip.recording import Recording
 
 READERS: Final[tuple[Reader, ...]] = (
     Folder(),

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Protocol
 
-from gapless.recording import Recording
+from gapless.trip.recording import Recording
 
 
 class Reader(Protocol):

@@ -17,7 +17,7 @@ from gapless.io.inertial_log import IMU_COLUMNS
 from gapless.io.other_logs import ODOMETER_COLUMNS, REFERENCE_COLUMNS
 from gapless.io.satellite_log import GNSS_COLUMNS
 from gapless.io.tables import load
-from gapless.recording import Array, Recording
+from gapless.trip.recording import Array, Recording
 
 SETTINGS: Final = "recording.toml"
 KEYS: Final = {

@@ -13,7 +13,7 @@ from gapless.io.assemble import assemble
 from gapless.io.inertial_log import DTHETA, DVEL
 from gapless.io.satellite_log import POSITION, SD_POSITION, SD_VELOCITY, VELOCITY
 from gapless.io.text import first_data_line, load_numbers, read_head
-from gapless.recording import Array, Recording
+from gapless.trip.recording import Array, Recording
 
 IMU_LAYOUT: Final = ("time", *DTHETA, *DVEL)
 GNSS_LAYOUTS: Final = (

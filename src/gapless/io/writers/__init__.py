@@ -14,7 +14,7 @@ from gapless.io.writers.geojson import write_geojson
 from gapless.io.writers.gpx import write_gpx
 from gapless.io.writers.kml import write_kml
 from gapless.io.writers.parquet import write_parquet
-from gapless.solution import Solution
+from gapless.trip.solution import Solution
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from gapless.io.writers.atomic import atomic
 from gapless.io.writers.table import solution_columns
-from gapless.solution import Solution
+from gapless.trip.solution import Solution
 
 _FORMATS = {"time": "%.6f", "lat": "%.10f", "lon": "%.10f", "height": "%.4f"}
 """Digits: 1 us, 0.01 mm, 0.1 mm; 1e-6 of its unit for anything else."""

@@ -8,7 +8,7 @@ from typing import Any
 
 from gapless.io.writers.atomic import atomic
 from gapless.io.writers.table import runs, solution_columns
-from gapless.solution import Solution
+from gapless.trip.solution import Solution
 
 
 def write_geojson(solution: Solution, path: Path) -> None:

@@ -8,7 +8,7 @@ from pathlib import Path
 from gapless.io.writers.atomic import atomic
 from gapless.io.writers.kml import clean
 from gapless.io.writers.table import solution_columns
-from gapless.solution import Solution
+from gapless.trip.solution import Solution
 
 
 def write_gpx(solution: Solution, path: Path, epoch: datetime | None = None) -> None:

@@ -8,7 +8,7 @@ from xml.sax.saxutils import escape
 
 from gapless.io.writers.atomic import atomic
 from gapless.io.writers.table import runs, solution_columns
-from gapless.solution import Solution
+from gapless.trip.solution import Solution
 
 COLOURS: Final = {
     "gnss": "ffb4771f",

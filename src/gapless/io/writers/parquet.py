@@ -6,7 +6,7 @@ from pathlib import Path
 
 from gapless.io.writers.atomic import atomic
 from gapless.io.writers.table import arrow_table, solution_columns
-from gapless.solution import Solution
+from gapless.trip.solution import Solution
 
 
 def write_parquet(solution: Solution, path: Path) -> None:

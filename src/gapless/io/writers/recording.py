@@ -12,7 +12,7 @@ from gapless.io.inertial_log import ACCEL, GYRO
 from gapless.io.satellite_log import POSITION, SD_POSITION, SD_VELOCITY, VELOCITY
 from gapless.io.writers.atomic import atomic
 from gapless.io.writers.table import arrow_table, trajectory_columns
-from gapless.recording import Array, Recording
+from gapless.trip.recording import Array, Recording
 from gapless.units import DEG
 
 _FILES = ("imu", "gnss", "odometer", "reference")

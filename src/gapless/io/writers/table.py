@@ -8,8 +8,8 @@ from typing import Any, Final
 
 import numpy as np
 
-from gapless.recording import Array, Trajectory
-from gapless.solution import Solution
+from gapless.trip.recording import Array, Trajectory
+from gapless.trip.solution import Solution
 from gapless.units import DEG
 
 SOURCES: Final = ("gnss", "bridge", "constraints", "ins", "reference")

@@ -12,9 +12,9 @@ import numpy as np
 
 from gapless.errors import MissingExtraError
 from gapless.io.writers.atomic import atomic
-from gapless.recording import Array
 from gapless.reports.background import east_north
 from gapless.reports.bench.folder import POOLED, Bench, groups, pools_of, read_bench
+from gapless.trip.recording import Array
 from gapless.units import DEG
 
 _COLOURS: Final = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#4b545c")

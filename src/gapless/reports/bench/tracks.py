@@ -7,11 +7,11 @@ from typing import Any
 
 import numpy as np
 
-from gapless.recording import Array
 from gapless.reports.background import Feature, east_north, placed
 from gapless.reports.bench.folder import Bench, groups, thinned
 from gapless.reports.decimate import simplify
 from gapless.reports.pack import packed_errors, packed_times, rounded
+from gapless.trip.recording import Array
 from gapless.units import DEG
 
 _POINTS = 90_000

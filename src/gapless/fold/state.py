@@ -9,13 +9,13 @@ from typing import Final
 
 from gapless.alignment.coarse import Aligner
 from gapless.bridges.base import Bridge
-from gapless.events import Event, ImuBlock, Reading
 from gapless.filters.adaptation.base import Adaptation
 from gapless.filters.consider import Wander
+from gapless.fold.manner import Manner
 from gapless.inertial.belief import Belief
-from gapless.manner import Manner
 from gapless.measurements.base import Constraint
-from gapless.recording import Array
+from gapless.trip.events import Event, ImuBlock, Reading
+from gapless.trip.recording import Array
 
 LASTS: Final = 1.6
 """A fix or a bridge's word holds for so long [s]: a second, and what a receiver at 1 Hz may be late."""

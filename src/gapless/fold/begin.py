@@ -7,12 +7,12 @@ import numpy as np
 from gapless import earth
 from gapless.alignment.coarse import Start
 from gapless.filters.consider import Wander
+from gapless.fold.journal import Journal
+from gapless.fold.settings import Settings
+from gapless.fold.state import State
+from gapless.fold.tape import Tape
 from gapless.inertial import propagate as at
 from gapless.inertial.trail import Trail
-from gapless.journal import Journal
-from gapless.settings import Settings
-from gapless.state import State
-from gapless.tape import Tape
 from gapless.units import DEG
 
 

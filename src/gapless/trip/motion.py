@@ -9,7 +9,7 @@ import numpy as np
 
 from gapless import earth
 from gapless.attitude import wrap
-from gapless.recording import Array, Columns, Imu, Recording
+from gapless.trip.recording import Array, Columns, Imu, Recording
 
 FIRST_MOTION_SPEED: Final = 5.0
 """Speed that counts as driving [m/s]."""

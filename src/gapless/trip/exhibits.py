@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from gapless.recording import Array
+from gapless.trip.recording import Array
 
 
 class Heard(NamedTuple):

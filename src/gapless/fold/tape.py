@@ -9,7 +9,7 @@ import numpy as np
 from gapless.filters.smoother import Correction
 from gapless.inertial.belief import Belief
 from gapless.inertial.layout import NAV, ROW, Layout
-from gapless.recording import Array
+from gapless.trip.recording import Array
 
 
 class Row(NamedTuple):

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from gapless.measurements.base import Constraint
-from gapless.recording import Array
+from gapless.trip.recording import Array
 
 
 @dataclass(frozen=True)

@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from gapless.events import ImuBlock
-from gapless.feed import events
+from gapless.fold.feed import events
 from gapless.simulate import Receiver, WheelSensor, simulate
+from gapless.trip.events import ImuBlock
 
 LOG = simulate("urban", "perfect", 20.0, 1, receiver=Receiver(rate=4.0), wheels=WheelSensor(rate=3.0))
 OFFSETS = {"position": -0.15, "velocity": 0.3, "odometer": 0.07}

@@ -14,10 +14,10 @@ from gapless.bridges.base import Bridge
 from gapless.filters.adaptation.base import Adaptation
 from gapless.filters.adaptation.gate import Gate
 from gapless.filters.adaptation.registry import KINDS
+from gapless.fold.manner import Manner
 from gapless.inertial.layout import Layout
-from gapless.manner import Manner
 from gapless.measurements.base import Constraint, Sensor
-from gapless.recording import Array
+from gapless.trip.recording import Array
 
 
 @dataclass(frozen=True)

@@ -8,8 +8,8 @@ from operator import itemgetter
 
 import numpy as np
 
-from gapless.events import EPS, Event, ImuBlock, Reading
-from gapless.recording import Array, Gnss, Imu, Recording
+from gapless.trip.events import EPS, Event, ImuBlock, Reading
+from gapless.trip.recording import Array, Gnss, Imu, Recording
 
 Arrival = tuple[float, tuple[Reading, ...]]
 """When readings arrive, and which."""

@@ -9,8 +9,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from gapless.exhibits import Exhibit
-from gapless.recording import Array, Columns, Note, Trajectory
+from gapless.trip.exhibits import Exhibit
+from gapless.trip.recording import Array, Columns, Note, Trajectory
 
 
 @dataclass(frozen=True)

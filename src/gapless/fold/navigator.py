@@ -7,21 +7,21 @@ from typing import Any, Self
 
 import numpy as np
 
-from gapless.assimilate import assimilate
-from gapless.begin import begin
 from gapless.bridges.base import Bridge
-from gapless.events import EPS, Event, ImuBlock, Motion, Reading
 from gapless.filters.consider import Wander
+from gapless.fold.assimilate import assimilate
+from gapless.fold.begin import begin
+from gapless.fold.journal import Journal
+from gapless.fold.manner import Manner
+from gapless.fold.settings import Settings
+from gapless.fold.state import Past, State
+from gapless.fold.tape import Tape
 from gapless.inertial import propagate as at
 from gapless.inertial.belief import Belief, inject
 from gapless.inertial.cubature import propagate_points
 from gapless.inertial.pieces import GAP, pieces, without_holes
-from gapless.journal import Journal
-from gapless.manner import Manner
 from gapless.measurements.base import Observation
-from gapless.settings import Settings
-from gapless.state import Past, State
-from gapless.tape import Tape
+from gapless.trip.events import EPS, Event, ImuBlock, Motion, Reading
 
 __all__ = ["Navigator", "Settings"]
 

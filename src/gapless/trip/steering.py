@@ -6,8 +6,8 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from gapless.motion import horizontal_velocity
-from gapless.recording import Array, Gnss
+from gapless.trip.motion import horizontal_velocity
+from gapless.trip.recording import Array, Gnss
 
 STEERED_SPEED: Final = 3.0
 """Slower than this, a turn of the course says little [m/s]."""

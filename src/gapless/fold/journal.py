@@ -11,8 +11,8 @@ import numpy as np
 from gapless import attitude
 from gapless.inertial.belief import Belief
 from gapless.inertial.layout import ROW, Layout
-from gapless.recording import Array, Trajectory
-from gapless.solution import Innovations
+from gapless.trip.recording import Array, Trajectory
+from gapless.trip.solution import Innovations
 
 
 @dataclass

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from gapless.recording import Array, Imu
+from gapless.trip.recording import Array, Imu
 
 EPS = 1e-6
 """Times closer than this are the same instant [s]."""

@@ -9,14 +9,14 @@ import numpy as np
 from gapless.filters.adaptation.base import Innovation, Verdict
 from gapless.filters.adaptation.registry import kind_of
 from gapless.filters.update import assess, correct
+from gapless.fold.journal import Journal
+from gapless.fold.settings import Settings
+from gapless.fold.state import SOON, State
+from gapless.fold.tape import Tape
 from gapless.inertial.belief import Belief, inject
 from gapless.inertial.layout import ROW
-from gapless.journal import Journal
 from gapless.measurements.base import Observation
-from gapless.recording import Array
-from gapless.settings import Settings
-from gapless.state import SOON, State
-from gapless.tape import Tape
+from gapless.trip.recording import Array
 
 MISLED = 60.0
 """For so long after its last word a bridge is suspected where a filter turns out to be wrong [s]."""

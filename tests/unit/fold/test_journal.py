@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from gapless import attitude
+from gapless.fold.journal import Journal
 from gapless.inertial.belief import Belief
 from gapless.inertial.layout import Layout
-from gapless.journal import Journal
 from gapless.units import DEG
 
 LAYOUT = Layout(("gyro_scale",))

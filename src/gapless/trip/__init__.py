@@ -1,0 +1,1 @@
+"""What a trip measured, how it moved, and what a run found of it."""
