@@ -18,11 +18,11 @@ import numpy as np
 
 from gapless.fold.feed import events
 from gapless.fold.navigator import Navigator
+from gapless.runs.prepare import withhold_from
 from gapless.scenarios import Outage
 from gapless.simulate import simulate
 from gapless.systems.adjust import named
 from gapless.systems.build import settings
-from gapless.systems.fuse import withhold_from
 
 PAPERS = ("wang2018", "liu2019-denoise", "georges2015", "aslinezhad2020", "tan2015")
 START = 400.0

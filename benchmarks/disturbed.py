@@ -22,9 +22,9 @@ from scipy.spatial.transform import Rotation
 from gapless.evaluation import score
 from gapless.laboratory.pool import in_order
 from gapless.laboratory.study import Source, stored
+from gapless.runs.fuse import fuse
 from gapless.scenarios import plan
 from gapless.systems.adjust import named
-from gapless.systems.fuse import fuse
 from gapless.trip.recording import Imu, Recording
 from gapless.units import DEG
 

@@ -55,9 +55,11 @@ def detected(gain: float, neighbours: int, repeats: int) -> float:
 def isolated(folder: Path, count: int = 30) -> None:
     """Forks against whole runs."""
     from gapless import io
+    from gapless.runs.decide import decide_before
+    from gapless.runs.forks import piece, run_with_forks
+    from gapless.runs.fuse import fuse
+    from gapless.runs.prepare import withhold_from
     from gapless.scenarios import plan
-    from gapless.systems.forks import piece, run_with_forks
-    from gapless.systems.fuse import decide_before, fuse, withhold_from
     from gapless.systems.library import load
 
     log, system = io.read(folder), load("constraints")

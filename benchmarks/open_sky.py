@@ -14,7 +14,7 @@ from outages import recordings
 from gapless import earth, io
 from gapless.evaluation import score
 from gapless.evaluation.interpolation import interpolate
-from gapless.systems.fuse import fuse
+from gapless.runs.fuse import fuse
 from gapless.trip.solution import Solution
 
 

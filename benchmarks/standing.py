@@ -23,8 +23,8 @@ from gapless.bridges.orders import LONGEST, TOP, Spectrum, spectrum, window
 from gapless.bridges.peak import peak
 from gapless.bridges.wheels import Wheels
 from gapless.laboratory.study import stored
+from gapless.runs.fuse import fuse
 from gapless.systems.adjust import named
-from gapless.systems.fuse import fuse
 from gapless.trip.recording import Recording
 
 BELIEVED = ((0.8, 1.9), (1.6, 1.2), (3.2, 0.6), (5.0, 2.0))

@@ -19,9 +19,9 @@ import numpy as np
 from gapless.bridges.comb import Memory
 from gapless.bridges.orders import WINDOW, spectrum
 from gapless.laboratory.study import stored
+from gapless.runs.fuse import fuse
 from gapless.simulate import CAR, simulate
 from gapless.systems.adjust import named
-from gapless.systems.fuse import fuse
 
 SYSTEMS = ("constraints", "wheels", "auto")
 

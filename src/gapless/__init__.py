@@ -63,15 +63,15 @@ if TYPE_CHECKING:
     from gapless.evaluation import score
     from gapless.io import read, recording_from_frames, to_pandas, write, write_recording
     from gapless.reports import summarise, write_report
+    from gapless.runs.fuse import fuse
+    from gapless.runs.smooth import smooth
+    from gapless.runs.vehicle import vehicle_attitude
     from gapless.scenarios import Outage, plan
     from gapless.simulate import simulate as simulate_drive
     from gapless.sweeps.conduct import sweep
     from gapless.sweeps.store import read as read_sweep
-    from gapless.systems.fuse import fuse
     from gapless.systems.library import load as load_system
     from gapless.systems.recipe import System
-    from gapless.systems.smooth import smooth
-    from gapless.systems.vehicle import vehicle_attitude
     from gapless.trip.recording import Gnss, Imu, Odometer, Recording, Trajectory
     from gapless.trip.solution import Decision, Solution
 
@@ -118,11 +118,11 @@ _HOMES: Final = {
     "trip.solution": ("Decision", "Solution"),
     "sweeps.conduct": ("sweep",),
     "sweeps.store": ("read_sweep",),
-    "systems.fuse": ("fuse",),
+    "runs.fuse": ("fuse",),
     "systems.library": ("load_system",),
     "systems.recipe": ("System",),
-    "systems.smooth": ("smooth",),
-    "systems.vehicle": ("vehicle_attitude",),
+    "runs.smooth": ("smooth",),
+    "runs.vehicle": ("vehicle_attitude",),
 }
 """Public names by the module that they come from; loaded when first asked for."""
 _THERE: Final = {"simulate_drive": "simulate", "load_system": "load", "read_sweep": "read"}

@@ -26,8 +26,8 @@ FAST = {"reassoc", "contract", "arcp", "nsz"}
 """Fast-math flags that keep NaN and infinity alive: a kernel must be able to notice them."""
 
 
-_FILES = ("_numba", "units", "earth", "attitude", "recording", "events")
-_WITH = ("filters", "inertial", "sensors", "measurements", "denoise", "bridges", "learners")
+_FILES = ("_numba", "units", "earth", "attitude")
+_WITH = ("trip", "filters", "inertial", "sensors", "measurements", "denoise", "bridges", "learners")
 _ROOMS = (*(f"{name}.py" for name in _FILES), *_WITH)
 """Modules that hold kernels, and all that those may import (the floors keep it so)."""
 _KEPT = 30.0 * 86400.0

@@ -185,7 +185,7 @@ def test_paper_page_shows_the_recipe_and_every_comparator(page):
     for name in system_names():
         assert name in text if name.startswith(page.stem) else True
     for path in re.findall(
-        r"`((?:bridges|denoise|filters|inertial|learners|measurements|systems)/[\w/]+\.py)`", text
+        r"`((?:bridges|denoise|filters|inertial|learners|measurements|runs|systems)/[\w/]+\.py)`", text
     ):
         assert (ROOT / "src/gapless" / path).exists(), path
     result = text.split("## Result")[1]

@@ -18,11 +18,12 @@ from gapless.errors import RecordingError
 from gapless.evaluation import score, solution_errors
 from gapless.evaluation.errors import gnss_truth
 from gapless.evaluation.statistics import rms
+from gapless.runs.decide import decide, decide_before
+from gapless.runs.forks import piece, run_with_forks
+from gapless.runs.fuse import fuse
+from gapless.runs.prepare import withhold_from
 from gapless.scenarios import plan
 from gapless.simulate import spikes
-from gapless.systems.decide import decide
-from gapless.systems.forks import piece, run_with_forks
-from gapless.systems.fuse import decide_before, fuse, withhold_from
 from gapless.systems.library import load
 from gapless.systems.recipe import System
 from gapless.units import DEG

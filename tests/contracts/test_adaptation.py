@@ -14,8 +14,8 @@ from gapless.evaluation import score
 from gapless.filters.adaptation.base import Innovation
 from gapless.filters.adaptation.registry import KINDS, RULES, Chain, bends_gain, chain, kind_of
 from gapless.filters.update import assess, correct
+from gapless.runs.fuse import fuse
 from gapless.simulate import Receiver, simulate
-from gapless.systems.fuse import fuse
 from gapless.systems.library import parse
 from gapless.trip.motion import displace
 

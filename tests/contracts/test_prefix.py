@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from folding import OUTAGE, SILENCE, heard, prepared, recording, rows, run
 
+from gapless.runs.fuse import fuse
 from gapless.scenarios import Outage
 from gapless.simulate import spikes
-from gapless.systems.fuse import fuse
 from gapless.systems.recipe import Clock, Mounting, System
 
 CUTS = (30.0, 60.0, 70.05, OUTAGE[0] + 8.004, OUTAGE[1] + 0.35, SILENCE[0] + 5.0, SILENCE[1] + 12.0)

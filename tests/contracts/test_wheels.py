@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from gapless.fold.feed import events
+from gapless.runs.conduct import navigator_for
+from gapless.runs.decide import Decided
 from gapless.scenarios import Outage, withhold
 from gapless.simulate import CAR, simulate
 from gapless.systems.adjust import changed, named
-from gapless.systems.conduct import navigator_for
-from gapless.systems.decide import Decided
 from gapless.trip.events import ImuBlock
 
 OUTAGES = (Outage(235.0, 250.0), Outage(285.0, 300.0))

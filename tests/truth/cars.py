@@ -14,12 +14,12 @@ from gapless.bridges.wheels import Wheels
 from gapless.evaluation import score
 from gapless.fold.feed import events
 from gapless.fold.settings import Settings
+from gapless.runs.conduct import as_built, navigator_for
+from gapless.runs.decide import Decided
+from gapless.runs.fuse import fuse
 from gapless.scenarios import Outage
 from gapless.simulate import CAR, Chassis, simulate
 from gapless.systems.adjust import named
-from gapless.systems.conduct import as_built, navigator_for
-from gapless.systems.decide import Decided
-from gapless.systems.fuse import fuse
 from gapless.systems.recipe import System
 from gapless.trip.recording import Recording
 from gapless.trip.solution import Solution

@@ -10,12 +10,12 @@ from gapless.bridges.combs import Combs
 from gapless.bridges.orders import WINDOW
 from gapless.bridges.wheels import TAUGHT, Wheels
 from gapless.fold.feed import events
+from gapless.runs.conduct import navigator_for
+from gapless.runs.decide import Decided
 from gapless.scenarios import withhold
 from gapless.sensors.grades import grade
 from gapless.simulate import CAR, Engine, Gear, Slip, WheelComb, simulate, speed_bound
 from gapless.systems.adjust import changed, named
-from gapless.systems.conduct import navigator_for
-from gapless.systems.decide import Decided
 from gapless.trip.exhibits import Heard
 
 DECIDED = Decided({}, (np.zeros(2), np.full(2, 0.02)), 0.0, (), 100.0)

@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 
 from gapless.evaluation import score
+from gapless.runs.fuse import fuse
 from gapless.scenarios import Outage
 from gapless.sensors import grade
 from gapless.simulate import WheelSensor, simulate
 from gapless.systems.adjust import changed, named
-from gapless.systems.fuse import fuse
 
 OUTAGES = tuple(Outage(s, s + 60.0) for s in (240.0, 360.0, 480.0))
 

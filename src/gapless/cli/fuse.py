@@ -95,7 +95,7 @@ def fuse(
     if save_model is not None:
         _save_model(solution, save_model)
     if vehicle:
-        from gapless.systems.vehicle import vehicle_attitude
+        from gapless.runs.vehicle import vehicle_attitude
 
         solution = vehicle_attitude(solution)
 
@@ -130,8 +130,8 @@ def _navigate(work: Job, rate: float, smooth: bool) -> tuple[Solution, Scores | 
     """Solution, and scores where there is something to score it against."""
     from gapless.cli.progress import progress
     from gapless.errors import ConfigError
-    from gapless.systems.fuse import fuse
-    from gapless.systems.smooth import smooth as smoothed
+    from gapless.runs.fuse import fuse
+    from gapless.runs.smooth import smooth as smoothed
 
     most = work.recording.imu.rate
     if not rate <= most * 1.01:

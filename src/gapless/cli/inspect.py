@@ -24,7 +24,7 @@ def inspect(**chosen: Any) -> None:
 
     from gapless.reports.summary import summarise
     from gapless.reports.terminal import summary_lines
-    from gapless.systems.fuse import fuse
+    from gapless.runs.fuse import fuse
 
     with progress("deciding", work.recording.duration) as tell:
         solution = fuse(work.recording, work.system, work.outages, 1.0, work.causal, tell)

@@ -9,8 +9,8 @@ from typing import NamedTuple, Protocol
 import numpy as np
 
 from gapless.laboratory.prefix import Peek, from_the_start, samples
+from gapless.runs.forks import Fork
 from gapless.scenarios import Outage
-from gapless.systems.forks import Fork
 from gapless.trip.recording import Recording, Trajectory
 from gapless.trip.solution import Solution
 

@@ -12,14 +12,15 @@ import numpy as np
 from gapless.fold.feed import events
 from gapless.laboratory.methods import Function, Run
 from gapless.laboratory.prefix import Peek, first_difference, from_the_start, known_at, samples, spoil
+from gapless.runs.decide import DECISIONS_TAKEN_LATE, Decided, decide_before
+from gapless.runs.forks import piece, run_with_forks
+from gapless.runs.fuse import fold
+from gapless.runs.prepare import prepared, withhold_from
+from gapless.runs.smooth import smooth
 from gapless.scenarios import Outage
 from gapless.systems.build import stamps
-from gapless.systems.decide import Decided
-from gapless.systems.forks import piece, run_with_forks
-from gapless.systems.fuse import DECISIONS_TAKEN_LATE, decide_before, fold, withhold_from
-from gapless.systems.prepare import prepared, sees_the_future
+from gapless.systems.denoising import sees_the_future
 from gapless.systems.recipe import System
-from gapless.systems.smooth import smooth
 from gapless.trip.recording import Recording
 from gapless.trip.solution import Solution
 

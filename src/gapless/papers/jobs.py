@@ -10,12 +10,12 @@ from gapless.evaluation import Errors, Scores
 from gapless.laboratory.study import Source
 from gapless.papers.measure import measure
 from gapless.papers.model import SAME_CLOCK, WHITE, Experiment, Method, Window
+from gapless.runs.fuse import fuse
+from gapless.runs.smooth import smooth
 from gapless.scenarios import Outage
 from gapless.systems.adjust import changed
-from gapless.systems.fuse import fuse
 from gapless.systems.library import load
 from gapless.systems.recipe import System
-from gapless.systems.smooth import smooth
 from gapless.trip.recording import Array, Recording
 from gapless.trip.solution import Solution
 

@@ -10,8 +10,8 @@ import numpy as np
 from gapless import attitude
 from gapless.alignment.coarse import Aligner, Start
 from gapless.fold.settings import Settings
+from gapless.runs.fuse import fuse
 from gapless.scenarios import Outage
-from gapless.systems.fuse import fuse
 from gapless.systems.recipe import System
 from gapless.trip.events import Reading
 from gapless.trip.recording import Array, Recording

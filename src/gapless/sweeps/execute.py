@@ -10,11 +10,11 @@ import msgspec
 
 from gapless.errors import AlignmentError, ConfigError, GaplessError, SweepError
 from gapless.evaluation import OutageScore, Scores, score
+from gapless.runs.fuse import fuse
+from gapless.runs.smooth import smooth
 from gapless.scenarios import plan
 from gapless.sweeps.run import Run, label, versions
 from gapless.sweeps.sources import Simulated, recording
-from gapless.systems.fuse import fuse
-from gapless.systems.smooth import smooth
 from gapless.trip.recording import Recording
 from gapless.units import DEG
 

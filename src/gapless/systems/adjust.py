@@ -9,12 +9,10 @@ import msgspec
 from msgspec.structs import replace
 
 from gapless.errors import ConfigError
-from gapless.sensors import grade_names
 from gapless.systems.learning import BridgeUse
 from gapless.systems.library import checked, load, names
 from gapless.systems.recipe import Clock, DenoiseUse, System
 from gapless.systems.values import Offset
-from gapless.trip.recording import Recording
 
 PARTS: Final = {"bridge": BridgeUse(), "denoise": DenoiseUse()}
 """Parts that a system can do without, and what is left then."""
@@ -178,33 +176,6 @@ def with_clock(system: System, channel: str, offset: float) -> System:
     except msgspec.ValidationError as error:
         raise ConfigError(f"clock offset of {channel}, {offset:g} s: {error}") from None
     return replace(system, clock=replace(system.clock, **{channel: told}))
-
-
-def graded(system: System, recording: Recording) -> System:
-    """A system that knows the sensor's grade where the recording states it and the recipe does not.
-
-    Parameters
-    ----------
-    system : System
-    recording : Recording
-
-    Returns
-    -------
-    System
-
-    Raises
-    ------
-    ConfigError
-        If the recording states a grade that is not known.
-    """
-    if system.imu.grade or recording.grade is None:
-        return system
-    if recording.grade not in grade_names():
-        raise ConfigError(
-            f"{recording.name}: no sensor grade {recording.grade!r}; "
-            f"state one of {', '.join(grade_names())}, or none"
-        )
-    return replace(system, imu=replace(system.imu, grade=recording.grade))
 
 
 def _choices(field: str) -> tuple[str, ...]:

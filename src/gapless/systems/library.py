@@ -17,9 +17,9 @@ from gapless.errors import ConfigError
 from gapless.filters.adaptation.registry import KINDS
 from gapless.filters.adaptation.registry import check as check_rules
 from gapless.inertial.layout import EXTRAS
+from gapless.systems.denoising import denoiser
 from gapless.systems.learning import check as check_bridge
 from gapless.systems.learning import check_learner
-from gapless.systems.prepare import denoiser
 from gapless.systems.recipe import System
 
 T = TypeVar("T", bound=Struct)

@@ -87,7 +87,7 @@ def hears_interrupts():
 
 def test_ctrl_c_in_a_real_process(drive, tmp_path):
     script = (
-        "import sys, time, gapless.systems.fuse as systems\n"
+        "import sys, time, gapless.runs.fuse as systems\n"
         "from gapless.cli import main\n"
         "def slow(*_): print('ready', flush=True); time.sleep(60)\n"
         "systems.fuse = slow\n"

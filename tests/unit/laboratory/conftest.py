@@ -4,9 +4,10 @@ from functools import cache
 import numpy as np
 import pytest
 
+from gapless.runs.decide import decide_before
+from gapless.runs.fuse import fuse
 from gapless.scenarios import plan
 from gapless.simulate import Receiver, Vehicle, WheelSensor, simulate
-from gapless.systems.fuse import decide_before, fuse
 from gapless.systems.library import load
 from gapless.trip.recording import Recording
 from gapless.units import DEG

@@ -8,9 +8,11 @@ import pytest
 from gapless.evaluation import score, score_pieces
 from gapless.laboratory.methods import Function
 from gapless.laboratory.recipes import Recipe
+from gapless.runs.decide import decide_before
+from gapless.runs.forks import LEAD, first_touched
+from gapless.runs.fuse import fuse
+from gapless.runs.prepare import withhold_from
 from gapless.scenarios import Effect, Outage, parse, plan
-from gapless.systems.forks import LEAD, first_touched
-from gapless.systems.fuse import decide_before, fuse, withhold_from
 from gapless.systems.library import load
 
 

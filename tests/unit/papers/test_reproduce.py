@@ -22,8 +22,8 @@ from gapless.papers.kept import once
 from gapless.papers.page import summary
 from gapless.papers.start import fuse_from
 from gapless.papers.tables import number, tables
+from gapless.runs.fuse import fuse
 from gapless.systems.adjust import changed
-from gapless.systems.fuse import fuse
 from gapless.systems.library import load
 from gapless.units import DEG
 

@@ -10,12 +10,12 @@ from gapless.fold.feed import events
 from gapless.fold.navigator import Navigator
 from gapless.rehearsal.judge import Choice
 from gapless.rehearsal.stage import SETTLE, Plan, Rehearsing
+from gapless.runs.conduct import navigator_for
+from gapless.runs.decide import Decided
 from gapless.scenarios import Outage, withhold
 from gapless.simulate import CAR, simulate
 from gapless.systems.adjust import changed, named
 from gapless.systems.build import settings
-from gapless.systems.conduct import navigator_for
-from gapless.systems.decide import Decided
 from gapless.trip.events import ImuBlock
 
 MOUNTING = (np.zeros(2), np.full(2, 0.02))

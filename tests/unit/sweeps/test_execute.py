@@ -8,10 +8,10 @@ from studies import run
 import gapless as gp
 from gapless.errors import ConfigError, SweepError
 from gapless.evaluation import OutageScore
+from gapless.runs.smooth import smooth
 from gapless.sweeps.execute import execute, outage_columns
 from gapless.sweeps.run import Run
 from gapless.sweeps.sources import logged, recording
-from gapless.systems.smooth import smooth
 
 
 def test_same_run_same_bits():

@@ -7,12 +7,12 @@ import pytest
 from msgspec.structs import replace as other
 
 from gapless.errors import AlignmentError, ConfigError
+from gapless.runs.decide import decide
+from gapless.runs.fuse import fuse
 from gapless.scenarios import Outage
 from gapless.sensors import grade
 from gapless.simulate import WheelSensor, simulate
 from gapless.systems.build import budget, settings, states
-from gapless.systems.decide import decide
-from gapless.systems.fuse import fuse
 from gapless.systems.recipe import Clock, Filter, GnssUse, Imu, Mounting, System
 from gapless.units import DEG
 

@@ -8,10 +8,10 @@ from gapless.inertial.layout import EXTRAS, ROW, Layout
 from gapless.reports.summary import summarise
 from gapless.reports.tables import states as states_table
 from gapless.reports.terminal import summary_lines
+from gapless.runs.fuse import fuse
+from gapless.runs.smooth import smooth
 from gapless.simulate import Receiver, Vehicle, WheelSensor, simulate
-from gapless.systems.fuse import fuse
 from gapless.systems.library import parse
-from gapless.systems.smooth import smooth
 from gapless.trip.solution import observability
 
 RTK = Receiver(

@@ -10,9 +10,9 @@ from gapless.fold.manner import Manner
 from gapless.fold.navigator import Navigator
 from gapless.fold.settings import Settings
 from gapless.rehearsal.stage import Plan, Rehearsing
+from gapless.runs.decide import Decided
 from gapless.systems.adjust import changed
 from gapless.systems.build import candidates, settings
-from gapless.systems.decide import Decided
 from gapless.systems.recipe import System
 from gapless.trip.recording import Recording
 

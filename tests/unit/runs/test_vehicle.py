@@ -5,7 +5,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from gapless.errors import ConfigError
-from gapless.systems.vehicle import car_euler, vehicle_attitude
+from gapless.runs.vehicle import car_euler, vehicle_attitude
 from gapless.trip.recording import Trajectory
 from gapless.trip.solution import Solution
 

@@ -2,25 +2,29 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
-from msgspec.structs import replace
+from msgspec import structs
 
 from gapless import earth
 from gapless.alignment.clock import Curve, Offset, offset, path_curve, velocity_curve
 from gapless.fold.feed import events
 from gapless.fold.navigator import Navigator
+from gapless.runs.clocks import Clocks, base_offset, believed, clock_decision
+from gapless.runs.prepare import graded
+from gapless.scenarios import Outage
 from gapless.sensors.vibration import gyro_density
-from gapless.systems.build import budget, lever_arm, settings, stamps
-from gapless.systems.clocks import Clocks, base_offset, believed, clock_decision
+from gapless.systems.build import budget, settings, stamps
 from gapless.systems.learning import BridgeUse
 from gapless.systems.recipe import Adaptation, RehearsalUse, System
 from gapless.trip.recording import Array, Recording, Trajectory
 from gapless.trip.solution import Decision
 from gapless.units import DEG
 
+DECISIONS_TAKEN_LATE = "decisions taken late"
+"""Names the decision that tells that an outage had begun before anything could be decided."""
 CHANNELS = ("position", "velocity", "odometer")
 ENOUGH = 600.0
 """Seconds of navigation after which a first pass learns little more."""
@@ -99,6 +103,41 @@ def decide(recording: Recording, system: System, horizon: float = np.inf) -> Dec
     return Decided(passes.offsets, passes.mounting, passes.density, decisions, passes.span)
 
 
+def decide_before(open_sky: Recording, system: System, outages: tuple[Outage, ...]) -> Decided:
+    """Decide from what was logged before the first outage that interrupts navigation.
+
+    An outage before there was half a minute of it (a car still parked) leaves nothing to decide from
+    and nothing to bridge: the next one counts.
+
+    Parameters
+    ----------
+    open_sky : Recording
+        As `withhold_from` leaves it.
+    system : System
+    outages : tuple of Outage
+
+    Returns
+    -------
+    Decided
+    """
+    system = graded(system, open_sky)
+    horizons = [open_sky.start + start for start in sorted(o.start for o in outages)] or [np.inf]
+    for horizon in horizons:
+        decided = decide(open_sky, system, horizon)
+        if decided.span > 0.0:
+            break
+    if horizon > horizons[0]:
+        late = Decision(
+            DECISIONS_TAKEN_LATE,
+            round(horizon - open_sky.start, 3),
+            "s after the first sample",
+            "data",
+            "before the outages that began earlier there was too little motion to decide from",
+        )
+        decided = replace(decided, decisions=(*decided.decisions, late))
+    return decided
+
+
 class _FirstPass:
     """Navigates the past until its clock offsets settle."""
 
@@ -128,11 +167,13 @@ class _FirstPass:
         use = self.system.gnss
         # positions at a wrong time would bend the path that is to time them; velocities hold it
         floor = LOOSE if self.past.gnss.has_velocity else use.position_floor
-        gnss = replace(use, jitter=jitter, position_floor=max(floor, use.position_floor))
+        gnss = structs.replace(use, jitter=jitter, position_floor=max(floor, use.position_floor))
         sensors = tuple(s for s in self.system.sensors if s != "odometer")  # it would vouch for itself
-        coarse = replace(self.system.filter, tick=0.2, moments="taylor")
-        plain = replace(self.system, adaptation=Adaptation(), bridge=BridgeUse(), rehearsal=RehearsalUse())
-        system = replace(plain, gnss=gnss, filter=coarse, sensors=sensors)
+        coarse = structs.replace(self.system.filter, tick=0.2, moments="taylor")
+        plain = structs.replace(
+            self.system, adaptation=Adaptation(), bridge=BridgeUse(), rehearsal=RehearsalUse()
+        )
+        system = structs.replace(plain, gnss=gnss, filter=coarse, sensors=sensors)
         navigator = Navigator(
             settings(system, self.past, self.offsets, _given_mounting(system), self.density, coarse.tick)
         )
@@ -216,32 +257,6 @@ def _given_mounting(system: System) -> Mounting:
     return Mounting(angles, np.array([m.pitch_sd, m.yaw_sd]) * DEG)
 
 
-def static_decisions(recording: Recording, system: System) -> list[Decision]:
-    """What is settled without navigating: sensors, noise, lever arm.
-
-    Parameters
-    ----------
-    recording : Recording
-    system : System
-
-    Returns
-    -------
-    list of Decision
-    """
-    imu, gnss = recording.imu, recording.gnss
-    lever = tuple(float(a) for a in lever_arm(system, recording))
-    rate = 1.0 / float(np.median(np.diff(gnss.time))) if len(gnss) > 1 else 0.0
-    found = [
-        Decision("IMU rate", round(imu.rate, 2), "Hz", "data", f"{len(imu)} samples, median interval"),
-        Decision("GNSS rate", round(rate, 2), "Hz", "data", f"{len(gnss)} fixes, {_kinds(recording)}"),
-    ]
-    if system.gnss.lever_arm is not None:
-        return [*found, Decision("antenna lever arm", lever, "m", "user", "given in the configuration")]
-    if np.any(recording.lever_arm):
-        return [*found, Decision("antenna lever arm", lever, "m", "recording", "stated by the recording")]
-    return [*found, Decision("antenna lever arm", lever, "m", "default", "none is stated; taken as zero")]
-
-
 def noise_decision(system: System, density: float, stated: str | None = None) -> Decision:
     """Process noise of the gyros, the part of it that vibration decides.
 
@@ -268,17 +283,3 @@ def noise_decision(system: System, density: float, stated: str | None = None) ->
         return Decision(name, value, unit, "default", floor)
     share = f"{100.0 * imu.vibration:g} % of the {density / DEG:.3f} that the log shows from sample to sample"
     return Decision(name, value, unit, "data", f"{floor}, and {share}")
-
-
-def _kinds(recording: Recording) -> str:
-    words = {1: "single point", 2: "differential", 4: "RTK fixed", 5: "RTK float"}
-    codes, counts = np.unique(recording.gnss.fix, return_counts=True)
-    named = [
-        f"{words.get(int(c), 'other')} {100 * n / counts.sum():.0f} %"
-        for c, n in zip(codes, counts, strict=True)
-    ]
-    velocity = "with velocity" if recording.gnss.has_velocity else "without velocity"
-    return f"{', '.join(named)}, {velocity}"
-
-
-__all__ = ["CHANNELS", "Decided", "Mounting", "decide", "static_decisions"]

@@ -13,12 +13,13 @@ from dataclasses import dataclass, fields
 import numpy as np
 
 from gapless.fold.feed import events
+from gapless.runs.conduct import Folding, navigator_for
+from gapless.runs.decide import Decided
+from gapless.runs.fuse import fold
+from gapless.runs.prepare import graded, withhold_from
+from gapless.runs.tell import collect
 from gapless.scenarios import Outage
-from gapless.systems.adjust import graded
 from gapless.systems.build import stamps
-from gapless.systems.conduct import Folding, navigator_for
-from gapless.systems.decide import Decided
-from gapless.systems.fuse import collect, fold, withhold_from
 from gapless.systems.recipe import System
 from gapless.trip.recording import Recording, Trajectory
 from gapless.trip.solution import Solution

@@ -17,13 +17,13 @@ from gapless.fold.navigator import Navigator, Settings
 from gapless.fold.tape import Row, Tape
 from gapless.inertial.belief import inject
 from gapless.rehearsal.stage import Rehearsing
+from gapless.runs.conduct import Folding, navigator_for, settings_for
+from gapless.runs.decide import decide
+from gapless.runs.fuse import Progress, fold
+from gapless.runs.prepare import graded, prepared, withhold_from
+from gapless.runs.tell import collect
 from gapless.scenarios import Outage
-from gapless.systems.adjust import graded
 from gapless.systems.build import stamps
-from gapless.systems.conduct import Folding, navigator_for, settings_for
-from gapless.systems.decide import decide
-from gapless.systems.fuse import Progress, collect, fold, withhold_from
-from gapless.systems.prepare import prepared
 from gapless.systems.recipe import System
 from gapless.trip.recording import Recording
 from gapless.trip.solution import Decision, Solution, first_deviations

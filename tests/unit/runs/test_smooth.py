@@ -10,13 +10,13 @@ from msgspec.structs import replace as change
 from gapless import earth
 from gapless.errors import ConfigError
 from gapless.evaluation import nees, score
+from gapless.runs.fuse import fuse
+from gapless.runs.smooth import smooth
 from gapless.scenarios import plan
 from gapless.simulate import Receiver, simulate
 from gapless.systems import smooth as module
-from gapless.systems.fuse import fuse
 from gapless.systems.library import parse
 from gapless.systems.recipe import Clock, System
-from gapless.systems.smooth import smooth
 
 WHITE = Receiver(
     position_white=(1.0, 1.0, 2.0), position_correlated=(0.0, 0.0, 0.0), velocity=(0.1, 0.1, 0.2)

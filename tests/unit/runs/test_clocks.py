@@ -9,9 +9,9 @@ import pytest
 
 from gapless.alignment.clock import Offset
 from gapless.errors import RecordingError
+from gapless.runs.clocks import ONE_CLOCK, VAGUE, Clocks, believed, clock_decision
+from gapless.runs.decide import decide
 from gapless.simulate import simulate
-from gapless.systems.clocks import ONE_CLOCK, VAGUE, Clocks, believed, clock_decision
-from gapless.systems.decide import decide
 from gapless.systems.recipe import System
 
 SHARP, OTHER = Offset(-0.15, 0.03, 1.5, 300), Offset(-0.5, 0.015, 2.0, 300)
