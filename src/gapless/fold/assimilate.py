@@ -8,6 +8,7 @@ import numpy as np
 
 from gapless.filters.adaptation.base import Innovation, Verdict
 from gapless.filters.adaptation.registry import kind_of
+from gapless.filters.adaptation.relock import soft_bound
 from gapless.filters.update import assess, correct
 from gapless.fold.journal import Journal
 from gapless.fold.settings import Settings
@@ -16,7 +17,9 @@ from gapless.fold.tape import Tape
 from gapless.inertial.belief import Belief, inject
 from gapless.inertial.layout import ROW
 from gapless.measurements.base import Observation
+from gapless.trip.events import Reading
 from gapless.trip.recording import Array
+from gapless.witnesses.testimony import Ruling
 
 MISLED = 60.0
 """For so long after its last word a bridge is suspected where a filter turns out to be wrong [s]."""
@@ -37,6 +40,7 @@ def assimilate(
     o: Observation,
     journal: Journal,
     tape: Tape | None = None,
+    reading: Reading | None = None,
 ) -> bool:
     """Adapt, correct, write down.
 
@@ -51,22 +55,30 @@ def assimilate(
     o : Observation
     journal : Journal
     tape : Tape, optional
+    reading : Reading, optional
+        That it was made of; none for a constraint or a bridge's word.
 
     Returns
     -------
     bool
-        False where the observation was rejected, as one that is not finite always is.
+        False where the observation was rejected or its channel is silenced, as one that is not finite always is.
     """
     b, n = state.belief, settings.layout.n
     nis, s, hp = assess(b.p, ROW, n, o.z, o.H, o.R)
-    verdict = Verdict(None)
-    if math.isfinite(nis):
+    verdict, ruling = Verdict(None), "use"
+    if reading is not None:
+        ruling = _heard(state, reading, o, nis, journal)
+    if ruling == "believe":
+        verdict = Verdict(o.R, widen=True)
+    elif ruling == "use" and math.isfinite(nis):
         denied = channel == "velocity" and _denied(state, time, o.z)
         told = Innovation(channel, time, o.z, s, o.R, nis, denied)
         verdict = state.adaptation[kind_of(channel)].judge(told)
         if verdict.r is o.R and not verdict.widen:
             state.agreed[channel] = time
-    elif not np.isfinite(b.x).all() or (np.isfinite(o.z).all() and np.isfinite(o.R).all()):
+    elif not math.isfinite(nis) and (
+        not np.isfinite(b.x).all() or (np.isfinite(o.z).all() and np.isfinite(o.R).all())
+    ):
         _lose(state, settings)  # not what was read is no number, but the belief
     journal.innovation(channel, time, o.z, s, nis, _factor(verdict.r, o.R))
     _process(state, settings, verdict)
@@ -88,12 +100,21 @@ def assimilate(
     dx = correct(b.p, ROW, n, o.z, o.H, r, s, hp, verdict.gain)
     if o.slow is not None:
         state.wander.hear(time, *_looked_at(b, o.H), r, o.slow)
+    state.bench.corrected = state.bench.corrected + dx
     if b.error.size:
         b.error[:n] += dx
     else:
         inject(b.x, dx)
         b.trail.shift(dx[3:6])
     return True
+
+
+def _heard(state: State, reading: Reading, o: Observation, nis: float, journal: Journal) -> Ruling:
+    """What witnesses rule; a channel that falls silent, or is heard again, is written down."""
+    bound = soft_bound(o.z.size)
+    ruling = state.bench.hear(reading, o, nis, bound, state.belief)
+    journal.heard(reading.channel, reading.time, ruling)
+    return ruling
 
 
 def _find_astray(state: State, settings: Settings, time: float, z: Array) -> None:

@@ -55,6 +55,7 @@ class Journal:
         self.channels: dict[str, _Channel] = {}
         self.latest: dict[str, float] = {}
         self.alignments: list[tuple[float, str]] = []
+        self.rulings: list[tuple[float, str, str]] = []
 
     def row(self, time: float, belief: Belief, shared: Array, source: str) -> None:
         """Write the belief down.
@@ -101,6 +102,21 @@ class Journal:
         c.nis.append(nis)
         c.factor.append(factor)
 
+    def heard(self, channel: str, time: float, ruling: str) -> None:
+        """Write down that a channel was silenced, or is heard again.
+
+        Parameters
+        ----------
+        channel : str
+        time : float
+            [s]
+        ruling : str
+            "use", "silence" or "believe".
+        """
+        before = next((r for t, c, r in reversed(self.rulings) if c == channel and t < time), "use")
+        if ruling != before and not any(c == channel and t >= time for t, c, _ in self.rulings[-8:]):
+            self.rulings.append((time, channel, ruling))
+
     def align(self, time: float, evidence: str) -> None:
         """Write an alignment down.
 
@@ -120,7 +136,7 @@ class Journal:
         object
         """
         counts = {name: len(c.time) for name, c in self.channels.items()}
-        return self.last, len(self.times), counts, dict(self.latest), len(self.alignments)
+        return self.last, len(self.times), counts, dict(self.latest), len(self.alignments), len(self.rulings)
 
     def rewind(self, mark: Any) -> None:
         """Forget what was written after a mark.
@@ -130,13 +146,14 @@ class Journal:
         mark : object
             From `mark`.
         """
-        self.last, n, counts, latest, aligned = mark
+        self.last, n, counts, latest, aligned, ruled = mark
         self.latest = dict(latest)
         for rows in (self.times, self.states, self.variances, self.shared, self.sources):
             del rows[n:]
         for name, channel in self.channels.items():
             channel.cut(counts.get(name, 0))
         del self.alignments[aligned:]
+        del self.rulings[ruled:]
 
     def after(self, other: Journal) -> None:
         """Start empty where another journal stands.

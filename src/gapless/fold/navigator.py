@@ -22,7 +22,10 @@ from gapless.inertial.cubature import propagate_points
 from gapless.inertial.pieces import GAP, pieces, without_holes
 from gapless.measurements.base import Observation
 from gapless.trip.events import EPS, Event, ImuBlock, Motion, Reading
+from gapless.witnesses.bench import Bench
 
+HOLDS = 4.0
+"""A 95 % ellipse (5.99) holds what is off by the root of its variance times this, with some room."""
 __all__ = ["Navigator", "Settings"]
 
 
@@ -59,7 +62,8 @@ class Navigator:
         rules = {kind: rule.copy() for kind, rule in settings.adaptation.items()}
         aligner = settings.aligner.copy()
         manner = settings.manner
-        self._state = State(belief, rules, constraints, bridges, aligner, wander, manner.noise, manner)
+        bench = Bench(np.zeros(settings.layout.n))
+        self._state = State(belief, rules, constraints, bridges, aligner, wander, manner.noise, manner, bench)
         self._past = Past(settings.lateness)
         self._propagate = propagate_points if settings.cubature else at.propagate
         self.dropped = 0
@@ -202,7 +206,7 @@ class Navigator:
             if start is not None or not state.aligned:
                 return
         observation = self.settings.sensors[reading.channel].observe(state.belief, reading)
-        used = self._update(reading.channel, reading.time, observation)
+        used = self._update(reading.channel, reading.time, observation, reading)
         if used:
             state.heard[reading.channel] = reading.time
         for bridge in state.bridges:
@@ -309,6 +313,9 @@ class Navigator:
         if state.clock >= state.next_row - EPS:
             state.next_row = max(state.next_row + often, state.clock + 0.5 * often)
             source, shared = state.source, state.wander.response
+            off = state.bench.offset
+            if off.any():  # fixes that moved away and stay there: nobody knows yet which place is right
+                shared = shared + np.outer(off, off) / HOLDS
             if source != "gnss" and state.manner.scale != 1.0:
                 shared = shared + (state.manner.scale - 1.0) * state.belief.P[:3, :3]
             row = state.clock, state.belief, shared, source
@@ -316,5 +323,5 @@ class Navigator:
             if self.tape is not None:
                 self.tape.row(*row)
 
-    def _update(self, channel: str, time: float, o: Observation) -> bool:
-        return assimilate(self._state, self.settings, channel, time, o, self.journal, self.tape)
+    def _update(self, channel: str, time: float, o: Observation, reading: Reading | None = None) -> bool:
+        return assimilate(self._state, self.settings, channel, time, o, self.journal, self.tape, reading)

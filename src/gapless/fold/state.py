@@ -16,6 +16,7 @@ from gapless.inertial.belief import Belief
 from gapless.measurements.base import Constraint
 from gapless.trip.events import Event, ImuBlock, Reading
 from gapless.trip.recording import Array
+from gapless.witnesses.bench import Bench
 
 LASTS: Final = 1.6
 """A fix or a bridge's word holds for so long [s]: a second, and what a receiver at 1 Hz may be late."""
@@ -44,6 +45,8 @@ class State:
         Process noise, as an adaptation left it; never changed in place.
     manner : Manner
         As rehearsals advise.
+    bench : Bench
+        Who of the channels is heard.
     pending : list of Reading
         Readings that hold for a time still to come, in its order.
     heard : dict of str to float
@@ -72,6 +75,7 @@ class State:
     wander: Wander
     noise: Array
     manner: Manner
+    bench: Bench
     pending: list[Reading] = field(default_factory=list)
     heard: dict[str, float] = field(default_factory=dict)
     agreed: dict[str, float] = field(default_factory=dict)
@@ -115,6 +119,7 @@ class State:
             self.wander.copy(),
             self.noise,
             self.manner,
+            self.bench.copy(),
             list(self.pending),
             dict(self.heard),
             dict(self.agreed),
