@@ -61,7 +61,7 @@ def assimilate(
     Returns
     -------
     bool
-        False where the observation was rejected or its channel is silenced, as one that is not finite always is.
+        False where it was rejected, as what is not finite always is, or its channel silenced.
     """
     b, n = state.belief, settings.layout.n
     nis, s, hp = assess(b.p, ROW, n, o.z, o.H, o.R)

@@ -205,7 +205,7 @@ class Navigator:
                 begin(start, state, self.settings, self.journal, self.tape)
             if start is not None or not state.aligned:
                 return
-        observation = self.settings.sensors[reading.channel].observe(state.belief, reading)
+        observation = self._observed(reading)
         used = self._update(reading.channel, reading.time, observation, reading)
         if used:
             state.heard[reading.channel] = reading.time
@@ -214,6 +214,16 @@ class Navigator:
                 bridge.lost()
             else:
                 bridge.hear(state.belief, reading, used)
+
+    def _observed(self, reading: Reading) -> Observation:
+        """What a reading says; of wheels without a sign, what both ways of rolling make of it."""
+        sensor, belief = self.settings.sensors[reading.channel], self._state.belief
+        observation = sensor.observe(belief, reading)
+        if reading.channel != "odometer":
+            return observation
+        back, h = sensor.observe(belief, reading._replace(value=-reading.value)), observation.H
+        hph = float((h @ belief.P @ h.T)[0, 0])
+        return self._state.bench.sign.settles(float(reading.value[0]), observation, back, hph)
 
     # --- samples --------------------------------------------------------------------------------
 

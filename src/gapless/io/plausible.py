@@ -82,6 +82,10 @@ def _check_down(log: Log, sunk: Array, lower: Array) -> None:
         )
 
 
+_DEAD = 0.02
+"""A sensor that shows less of the way is not in another unit, but dead: the navigator silences it."""
+
+
 def check_odometer(log: Log, wheels: Odometer, gnss: Gnss) -> None:
     """Refuse wheel speeds whose way is not nearly as long as the positions show.
 
@@ -107,8 +111,10 @@ def check_odometer(log: Log, wheels: Odometer, gnss: Gnss) -> None:
     far = moved > _FAR
     if far.sum() < _ENOUGH:
         return
-    ratio = float(np.median(rolled[far] / moved[far]))
-    if not 0.7 < ratio < 1.4:
+    share = rolled[far] / moved[far]
+    alive = share[share > _DEAD]
+    ratio = float(np.median(alive)) if len(alive) >= _ENOUGH else 1.0
+    if not 0.7 < ratio < 1.4 and np.mean(np.abs(alive / ratio - 1.0) < 0.15) > 0.6:  # a unit is always wrong
         log.refuse(f"wheel speed is {ratio:.3g} times what the positions show", f"{_unit(ratio)}: log m/s")
 
 

@@ -61,7 +61,7 @@ class NonHolonomic(Constraint):
             self.vertical,
             self.turn,
         )
-        if speed < self.min_speed:
+        if abs(speed) < self.min_speed:
             return None
         self.last = motion.time
         return Observation(*observation)

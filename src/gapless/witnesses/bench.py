@@ -13,6 +13,7 @@ from gapless.measurements.base import Observation
 from gapless.trip.events import Reading
 from gapless.trip.recording import Array
 from gapless.witnesses.increments import Slack
+from gapless.witnesses.sign import Sign
 from gapless.witnesses.testimony import Ruling, Said, Testimony
 
 PATIENCE: Final = {"position": 25.0, "velocity": 20.0, "odometer": 60.0}
@@ -45,6 +46,7 @@ class Bench:
     channels: dict[str, Testimony] = field(default_factory=dict)
     fitted: dict[str, float] = field(default_factory=dict)
     offset: Array = field(default_factory=lambda: np.zeros(3))
+    sign: Sign = field(default_factory=Sign)
 
     def hear(self, reading: Reading, o: Observation, nis: float, bound: float, belief: Belief) -> Ruling:
         """Rule on a reading before it is used.
@@ -121,4 +123,4 @@ class Bench:
     def copy(self) -> Self:
         """An independent copy (arrays of its own are never changed in place)."""
         channels = {name: one.copy() for name, one in self.channels.items()}
-        return type(self)(self.corrected, channels, dict(self.fitted), self.offset)
+        return type(self)(self.corrected, channels, dict(self.fitted), self.offset, self.sign.copy())
