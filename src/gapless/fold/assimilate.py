@@ -19,6 +19,8 @@ from gapless.inertial.layout import ROW
 from gapless.measurements.base import Observation
 from gapless.trip.events import Reading
 from gapless.trip.recording import Array
+from gapless.witnesses.askew import pointed
+from gapless.witnesses.jolt import about
 from gapless.witnesses.testimony import Ruling
 
 MISLED = 60.0
@@ -28,6 +30,10 @@ FAR, OFTEN = 50.0, 4
 reach of any correction; so often, and nothing of it is believed."""
 WITNESS = 1.0
 """For so long after it was believed an odometer is a witness of the speed [s]."""
+FAST = 3.0
+"""A course tells where a car points from this speed on [m/s]."""
+AT_REST = 1.5
+"""z' S^-1 z of a car at rest stays below this: updates that come five times a second are loose."""
 DENSITIES = 5
 """How many of the noise parameters are densities; the rest are rates."""
 
@@ -68,7 +74,11 @@ def assimilate(
     verdict, ruling = Verdict(None), "use"
     if reading is not None:
         ruling = _heard(state, reading, o, nis, journal)
-    if ruling == "believe":
+    elif channel == "zero_velocity" and state.bench.rests_in_vain(time, nis <= AT_REST):
+        ruling = "believe"
+    if ruling == "turn":
+        _turn(state, o.z, journal, time)
+    if ruling in ("believe", "turn"):
         verdict = Verdict(o.R, widen=True)
     elif ruling == "use" and math.isfinite(nis):
         denied = channel == "velocity" and _denied(state, time, o.z)
@@ -86,7 +96,8 @@ def assimilate(
         b.widen(o.H, o.z)
         if channel == "position":
             _find_astray(state, settings, time, o.z)
-        if channel == "velocity" and time - state.heard.get("bridge", -math.inf) < MISLED:
+        misled = time - state.heard.get("bridge", -math.inf) < MISLED
+        if channel == "velocity" and (misled or ruling != "use"):
             b.doubt(float(np.hypot(*o.z[:2])), settings.ceiling)
     r = verdict.r
     if r is None:
@@ -115,6 +126,20 @@ def _heard(state: State, reading: Reading, o: Observation, nis: float, journal: 
     ruling = state.bench.hear(reading, o, nis, bound, state.belief)
     journal.heard(reading.channel, reading.time, ruling)
     return ruling
+
+
+def _turn(state: State, z: Array, journal: Journal, time: float) -> None:
+    """Put right what is askew: the box, where the car points along its course, or else the heading."""
+    b, angle = state.belief, state.bench.turned
+    v, c = b.v_n[:2] + z[:2], b.C_nb
+    yaw = float(b.block("mounting")[1]) if "mounting" in b.layout else 0.0
+    ahead = math.atan2(c[1, 0], c[0, 0]) + yaw
+    if math.hypot(*v) > FAST and pointed(math.atan2(v[1], v[0]), ahead, angle):
+        turn = about(c[2], angle)
+        state.box = turn if state.box is None else turn @ state.box
+        journal.knock(time, angle)
+        angle = 0.0
+    b.turn(angle)
 
 
 def _find_astray(state: State, settings: Settings, time: float, z: Array) -> None:

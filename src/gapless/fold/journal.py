@@ -56,6 +56,7 @@ class Journal:
         self.latest: dict[str, float] = {}
         self.alignments: list[tuple[float, str]] = []
         self.rulings: list[tuple[float, str, str]] = []
+        self.knocks: list[tuple[float, float]] = []
 
     def row(self, time: float, belief: Belief, shared: Array, source: str) -> None:
         """Write the belief down.
@@ -117,6 +118,19 @@ class Journal:
         if ruling != before and not any(c == channel and t >= time for t, c, _ in self.rulings[-8:]):
             self.rulings.append((time, channel, ruling))
 
+    def knock(self, time: float, angle: float) -> None:
+        """Write down that the box was turned.
+
+        Parameters
+        ----------
+        time : float
+            [s]
+        angle : float
+            By how much its gravity turned [rad].
+        """
+        if not self.knocks or time > self.knocks[-1][0] + 1.0:
+            self.knocks.append((time, angle))
+
     def align(self, time: float, evidence: str) -> None:
         """Write an alignment down.
 
@@ -136,7 +150,15 @@ class Journal:
         object
         """
         counts = {name: len(c.time) for name, c in self.channels.items()}
-        return self.last, len(self.times), counts, dict(self.latest), len(self.alignments), len(self.rulings)
+        return (
+            self.last,
+            len(self.times),
+            counts,
+            dict(self.latest),
+            len(self.alignments),
+            len(self.rulings),
+            len(self.knocks),
+        )
 
     def rewind(self, mark: Any) -> None:
         """Forget what was written after a mark.
@@ -146,7 +168,7 @@ class Journal:
         mark : object
             From `mark`.
         """
-        self.last, n, counts, latest, aligned, ruled = mark
+        self.last, n, counts, latest, aligned, ruled, knocked = mark
         self.latest = dict(latest)
         for rows in (self.times, self.states, self.variances, self.shared, self.sources):
             del rows[n:]
@@ -154,6 +176,7 @@ class Journal:
             channel.cut(counts.get(name, 0))
         del self.alignments[aligned:]
         del self.rulings[ruled:]
+        del self.knocks[knocked:]
 
     def after(self, other: Journal) -> None:
         """Start empty where another journal stands.

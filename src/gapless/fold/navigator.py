@@ -19,10 +19,13 @@ from gapless.fold.tape import Tape
 from gapless.inertial import propagate as at
 from gapless.inertial.belief import Belief, inject
 from gapless.inertial.cubature import propagate_points
+from gapless.inertial.layout import ROW
 from gapless.inertial.pieces import GAP, pieces, without_holes
 from gapless.measurements.base import Observation
 from gapless.trip.events import EPS, Event, ImuBlock, Motion, Reading
+from gapless.trip.recording import Array
 from gapless.witnesses.bench import Bench
+from gapless.witnesses.jolt import Jolt
 
 HOLDS = 4.0
 """A 95 % ellipse (5.99) holds what is off by the root of its variance times this, with some room."""
@@ -32,6 +35,29 @@ __all__ = ["Navigator", "Settings"]
 def load_kernels() -> None:
     """Do now what the first kernel called would wait for: a fifth of a second, once a process."""
     inject(np.array([0.0] * 6 + [1.0] + [0.0] * 9), np.zeros(15))
+
+
+def in_box(block: ImuBlock, box: Array | None) -> ImuBlock:
+    """Samples in the axes of the box as it sat at first.
+
+    Parameters
+    ----------
+    block : ImuBlock
+    box : ndarray, shape (3, 3), or None
+        None where it was never moved.
+
+    Returns
+    -------
+    ImuBlock
+    """
+    if box is None:
+        return block
+    # column by column: a matrix product's bits would depend on how many rows there are
+    dtheta, dvel = (
+        np.stack([v[:, 0] * r[0] + v[:, 1] * r[1] + v[:, 2] * r[2] for r in box], axis=1)
+        for v in (block.dtheta, block.dvel)
+    )
+    return block._replace(dtheta=dtheta, dvel=dvel)
 
 
 class Navigator:
@@ -243,6 +269,8 @@ class Navigator:
     def _run(self, block: ImuBlock, first: int, last: int, due: bool) -> None:
         """Propagate samples first..last-1, ticking on the way; `due`: an observation waits there."""
         s, state = self.settings, self._state
+        raw, box = block, state.box
+        block = in_box(raw, box)
         if state.aligner is not None:
             rows = np.column_stack([block.time, block.dt, block.dtheta, block.dvel])[first:last]
             state.aligner.feel(float(block.time[last - 1]), rows)
@@ -272,6 +300,9 @@ class Navigator:
                 b.trail.mark(state.clock, b.v_n)
             if ticked:
                 self._tick()
+                if state.box is not box:
+                    box = state.box
+                    block = in_box(raw, box)
             elif often:
                 self._row()
 
@@ -303,6 +334,10 @@ class Navigator:
         dt = float(m[at.TICK_DT])
         motion = Motion(state.clock, dt, m[at.TICK_W :] / dt)
         m[at.TICK_DT :] = 0.0
+        tilt = math.sqrt(max(0.5 * float(state.belief.p[6 * ROW + 6] + state.belief.p[7 * ROW + 7]), 0.0))
+        jolt = state.bench.jolts.feel(motion.force, state.belief.C_nb[2], tilt, dt)
+        if jolt is not None:
+            self._knocked(jolt)
         for name, constraint in state.constraints.items():
             observation = constraint.tick(state.belief, motion)
             if observation is None or (state.aligner is not None and constraint.needs_heading):
@@ -316,6 +351,16 @@ class Navigator:
                     if heeded and self._update(channel, motion.time, said):
                         state.heard["bridge"] = motion.time
         self._row()
+
+    def _knocked(self, jolt: Jolt) -> None:
+        """The box was turned: what it feels is taken to the axes of before, and doubted."""
+        state = self._state
+        state.box = jolt.turn if state.box is None else jolt.turn @ state.box
+        state.belief.knocked(jolt.turn, jolt.since, jolt.gained, self.settings.ceiling)
+        state.bench.forget()
+        for bridge in state.bridges:
+            bridge.lost()
+        self.journal.knock(state.clock - jolt.since, jolt.angle)
 
     def _row(self) -> None:
         """Write a row where one is due; it changes nothing of the belief."""

@@ -63,6 +63,8 @@ class State:
         Factor on the covariance that is due once time goes on.
     astray : tuple of float
         When positions found the filter far off, lately [s].
+    box : ndarray, shape (3, 3), or None
+        Takes what the sensors feel to the axes of the box as it sat at first, where it was knocked over.
     lost : bool
         Whether nothing of what was estimated is believed: the next start begins anew.
     """
@@ -85,6 +87,7 @@ class State:
     fade: float = 1.0
     astray: tuple[float, ...] = ()
     lost: bool = False
+    box: Array | None = None
 
     @property
     def source(self) -> str:
@@ -129,6 +132,7 @@ class State:
             self.fade,
             self.astray,
             self.lost,
+            self.box,
         )
 
     def expect(self, readings: tuple[Reading, ...]) -> None:

@@ -213,6 +213,53 @@ class Belief:
             index = np.arange(blocks[name].start, blocks[name].stop)
             p[index, index] += 0.1 * ceiling[index]
 
+    def turn(self, angle: float) -> None:
+        """Turn the heading by what accelerations show; how far that is off, and why, is not known.
+
+        Parameters
+        ----------
+        angle : float
+            Clockwise [rad].
+        """
+        half = 0.5 * angle
+        self.x[6:10] = product((np.cos(half), 0.0, 0.0, np.sin(half)), tuple(self.x[6:10]))
+        p = self.p.reshape(ROW, ROW)
+        p[8, 8] += np.square(0.3 * angle) + np.square(10.0 * DEG)
+        p[11, 11] += np.square(min(abs(angle) / SECONDS, 3.0 * DEG))
+        if "mounting" in self.layout:
+            yaw = self.layout.blocks["mounting"].start + 1
+            p[yaw, yaw] += angle * angle
+
+    def knocked(self, turn: Array, since: float, gained: Array, ceiling: Array) -> None:
+        """Go on after the box was turned: in its former axes, in doubt of how well these are known.
+
+        Parameters
+        ----------
+        turn : ndarray, shape (3, 3)
+            Takes what is felt now to the axes of before.
+        since : float
+            For so long it has been taken for what it was not [s].
+        gained : ndarray, shape (3,)
+            Force too much that was integrated meanwhile, in the axes of before [m/s^2].
+        ceiling : ndarray, shape (n,)
+            Variance of each state when nothing is known of it; biases come back to a quarter of it.
+        """
+        wrong = self.C_nb @ gained
+        off, moved = wrong * since, 0.5 * wrong * since * since
+        step = np.zeros(self.layout.n)
+        step[:3], step[3:6] = -moved, -off
+        inject(self.x, step)
+        for at_ in (at.PREV_THETA, at.PREV_VEL):
+            self.memory[at_ : at_ + 3] = turn @ self.memory[at_ : at_ + 3]
+        p, blocks = self.p.reshape(ROW, ROW), self.layout.blocks
+        p[(0, 1, 2), (0, 1, 2)] += np.square(0.3 * float(np.linalg.norm(moved)) + 0.3)
+        p[(3, 4, 5), (3, 4, 5)] += np.square(0.2 * float(np.linalg.norm(off)) + 0.2)
+        p[(6, 7, 8), (6, 7, 8)] += np.square(np.array([4.0, 4.0, 15.0]) * DEG)
+        for name, share in (("gyro_bias", 0.25), ("accel_bias", 0.25), ("mounting", 0.1)):
+            if name in blocks:
+                index = np.arange(blocks[name].start, blocks[name].stop)
+                p[index, index] += share * ceiling[index]
+
     def estimate(self) -> Array:
         """The best state: nominal, with the open-loop error applied to a copy of it.
 
@@ -250,11 +297,12 @@ class Belief:
         Parameters
         ----------
         h : ndarray, shape (m, n)
-            Rows of a position or velocity observation: the identity on one block.
+            Rows of a position or velocity observation, or of one at rest: the identity on their blocks.
         z : ndarray, shape (m,)
             Innovation.
         """
         p = self.p.reshape(ROW, ROW)
         for row, error in zip(h, z, strict=True):
-            i = int(np.argmax(row[:6]))
+            direct = row[:6] if row[:6].any() else row
+            i = int(np.argmax(direct))
             p[i, i] += error * error

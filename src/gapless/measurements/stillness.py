@@ -255,15 +255,20 @@ class Stillness(Constraint):
         if self.filled < SLOTS:
             return None
         x, share = belief.estimate(), min(1.0, motion.dt / 0.4)
+        limits = self.limits if not self._seen_still(motion.time) else np.array([np.inf, *self.limits[1:]])
         still = stands(
             x, belief.p, ROW, motion.felt, share, self.ring, self.spread, self.smooth,
-            self.mean, self.var, self.odds, self.limits,
+            self.mean, self.var, self.odds, limits,
         )  # fmt: skip
         self.lasted = self.lasted + motion.dt if still and self._known(motion.time) else 0.0
         if self.lasted < self.hold or motion.time - self.last < self.interval - 1e-3:
             return None
         self.last = motion.time
         return Observation(*zero_velocity(x, belief.layout.n, motion.rate, self.sd, self.sd_rate))
+
+    def _seen_still(self, time: float) -> bool:
+        """GNSS sees the car stand: a steady rate is then the gyro's, however large."""
+        return self.label == STILL and time - self.label_time < 2.2 and time - self.label_since > 2.0
 
     def _known(self, time: float) -> bool:
         """Both classes have been seen, and a fresh GNSS speed does not contradict."""

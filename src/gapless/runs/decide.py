@@ -11,6 +11,7 @@ from msgspec import structs
 from gapless import earth
 from gapless.alignment.clock import Curve, Offset, offset, path_curve, velocity_curve
 from gapless.fold.feed import events
+from gapless.fold.journal import Journal
 from gapless.fold.navigator import Navigator
 from gapless.runs.clocks import Clocks, base_offset, believed, clock_decision
 from gapless.runs.prepare import graded
@@ -187,7 +188,7 @@ class _FirstPass:
         """Take the estimates of a pass; whether they settled."""
         path, (blocks, sds) = navigator.journal.trajectory(), navigator.journal.blocks()
         self.span = float(path.time[-1] - path.time[0])
-        self._learn_mounting(blocks, sds)
+        self._learn_mounting(blocks, sds, _before_knocks(navigator.journal))
         settled, before = True, dict(self.offsets)
         self.found = self._estimates(path, blocks)
         for channel, estimate in self.found.items():
@@ -218,12 +219,12 @@ class _FirstPass:
             found["odometer"] = offset(Curve(path.time, speed), odometer.time, odometer.speed[:, None], 1)
         return found
 
-    def _learn_mounting(self, blocks: dict[str, Array], sds: dict[str, Array]) -> None:
+    def _learn_mounting(self, blocks: dict[str, Array], sds: dict[str, Array], row: int) -> None:
         if "mounting" not in blocks or self._mounting_given():
             return
-        sd = np.maximum(2.0 * sds["mounting"][-1], 0.5 * DEG)
+        sd = np.maximum(2.0 * sds["mounting"][row], 0.5 * DEG)
         prior = _given_mounting(self.system)
-        self.mounting = Mounting(blocks["mounting"][-1].copy(), np.minimum(sd, prior.sd))
+        self.mounting = Mounting(blocks["mounting"][row].copy(), np.minimum(sd, prior.sd))
         self.learned = True
 
     def _mounting_given(self) -> bool:
@@ -249,6 +250,11 @@ class _FirstPass:
             return [Decision(name, angles, "deg", "default", "too little motion; a state from zero", sd)]
         evidence = f"where the car does not slip over {self.span:.0f} s; states of the filter from here on"
         return [Decision(name, angles, "deg", "data", evidence, sd)]
+
+
+def _before_knocks(journal: Journal) -> int:
+    """The last row at which the box sat as it did at first."""
+    return int(np.searchsorted(journal.times, journal.knocks[0][0])) - 1 if journal.knocks else -1
 
 
 def _given_mounting(system: System) -> Mounting:

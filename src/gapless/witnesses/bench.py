@@ -12,9 +12,11 @@ from gapless.inertial.belief import Belief
 from gapless.measurements.base import Observation
 from gapless.trip.events import Reading
 from gapless.trip.recording import Array
+from gapless.witnesses.askew import SPAN, Askew
 from gapless.witnesses.increments import Slack
+from gapless.witnesses.jolt import Jolts
 from gapless.witnesses.sign import Sign
-from gapless.witnesses.testimony import Ruling, Said, Testimony
+from gapless.witnesses.testimony import INSISTS, Ruling, Said, Testimony
 
 PATIENCE: Final = {"position": 25.0, "velocity": 20.0, "odometer": 60.0}
 """By channel: for so long must what follows the motion contradict the filter to be believed [s]."""
@@ -28,6 +30,8 @@ AGREED: Final = 2.5
 """A channel that was believed so lately is a witness [s]."""
 LAXITY: Final = 0.3
 """Error of a velocity that is beyond what its deviation says [m/s]."""
+RADIUS: Final = 6.371e6
+"""Of the earth, for differences of seconds [m]."""
 RESTS, DRIVES = 0.5, 3.0
 """A reading below the first says that the car stands, a filter above the second that it does not [m/s]."""
 
@@ -47,6 +51,11 @@ class Bench:
     fitted: dict[str, float] = field(default_factory=dict)
     offset: Array = field(default_factory=lambda: np.zeros(3))
     sign: Sign = field(default_factory=Sign)
+    jolts: Jolts = field(default_factory=Jolts)
+    origin: Array | None = None
+    turned: float = 0.0
+    askew: Askew = field(default_factory=Askew)
+    at_odds: float = math.inf
 
     def hear(self, reading: Reading, o: Observation, nis: float, bound: float, belief: Belief) -> Ruling:
         """Rule on a reading before it is used.
@@ -74,16 +83,61 @@ class Bench:
             mine = self.channels[channel] = Testimony(size, PATIENCE[channel])
         value = (o.z + o.H @ self.corrected)[part]
         fits = nis <= bound
-        said = Said(
-            reading.time, reading.value, value, o.R.diagonal()[part], fits, self._rests(reading, belief)
-        )
-        ruling = mine.hear(said, self._slack(channel, belief), self._contradicted(channel, reading.time))
+        raw = self._metres(reading) if channel == "position" else reading.value[part]
+        var = o.R.diagonal()[part]
+        said = Said(reading.time, reading.value, raw, value, var, fits, self._rests(reading, belief))
+        ruling = mine.hear(said, self._slack(channel, belief), *self._against(channel, reading.time))
+        if channel == "velocity":
+            ruling = self._turned(said, ruling)
         if fits and ruling == "use":
             self.fitted[channel] = reading.time
         if channel == "position":
             doubtful = ruling == "silence" and mine.follows < reading.time
             self.offset = o.z.copy() if doubtful else np.zeros(3)
         return ruling
+
+    def _turned(self, said: Said, ruling: Ruling) -> Ruling:
+        """Whether accelerations are felt from another side than they are seen."""
+        past = self.channels["velocity"].past
+        change = past.change(said.time, said.value, said.raw, SPAN)
+        if change is None or ruling == "silence" or said.time - self.askew.time < 0.9:
+            return ruling
+        self.askew.hear(said.time, *change)
+        self.turned = self.askew.angle if not said.fits else 0.0
+        if not self.turned:
+            return ruling
+        self.forget()
+        return "turn"
+
+    def rests_in_vain(self, time: float, fits: bool) -> bool:
+        """Whether a car that GNSS sees stand has surprised the filter for too long: a sensor's zero moved.
+
+        Parameters
+        ----------
+        time : float
+        fits : bool
+            Whether standing still is no surprise.
+
+        Returns
+        -------
+        bool
+            True once; the filter is to be widened.
+        """
+        seen = any(self._believed(name, time) for name in ("position", "velocity"))
+        if fits or not seen or self.at_odds == math.inf:
+            self.at_odds = time
+            return False
+        if time - self.at_odds < INSISTS:
+            return False
+        self.at_odds = time
+        return True
+
+    def _metres(self, reading: Reading) -> Array:
+        """A position in metres from the first one; only differences count."""
+        if self.origin is None:
+            self.origin = reading.value
+        step = (reading.value - self.origin) * RADIUS
+        return np.array([step[0], step[1] * math.cos(reading.value[0]), self.origin[2] - reading.value[2]])
 
     def _slack(self, channel: str, belief: Belief) -> Slack:
         """What is left to the filter."""
@@ -103,14 +157,15 @@ class Bench:
         said = math.hypot(*reading.value[:2]) if reading.channel == "velocity" else abs(reading.value[0])
         return said < RESTS and math.hypot(*belief.v_n[:2]) > DRIVES
 
-    def _contradicted(self, channel: str, time: float) -> bool:
-        """Whether another channel that sees the same is with the filter."""
+    def _against(self, channel: str, time: float) -> tuple[bool, bool]:
+        """Whether others are with the filter against one that is heard, and against one that was silenced."""
         if channel == "position":
-            return False
+            return False, False
         place = self.channels.get("position")
         if channel == "velocity" and place is not None and not place.following(time):
-            return True  # one receiver: it does not know its speed while its place stands about
-        return any(self._believed(name, time) for name in PATIENCE if name != channel)
+            return True, True  # one receiver: it does not know its speed while its place stands about
+        others = any(self._believed(name, time) for name in PATIENCE if name != channel)
+        return others and channel == "odometer", others
 
     def _believed(self, channel: str, time: float) -> bool:
         mine = self.channels.get(channel)
@@ -119,8 +174,13 @@ class Bench:
     def forget(self) -> None:
         """The filter began anew: nothing that was compared with it counts."""
         self.channels, self.fitted, self.offset = {}, {}, np.zeros(3)
+        self.askew.forget()
 
     def copy(self) -> Self:
         """An independent copy (arrays of its own are never changed in place)."""
-        channels = {name: one.copy() for name, one in self.channels.items()}
-        return type(self)(self.corrected, channels, dict(self.fitted), self.offset, self.sign.copy())
+        new = object.__new__(type(self))
+        vars(new).update(vars(self))
+        new.channels = {name: one.copy() for name, one in self.channels.items()}
+        new.fitted, new.askew = dict(self.fitted), self.askew.copy()
+        new.sign, new.jolts = self.sign.copy(), self.jolts.copy()
+        return new

@@ -16,7 +16,7 @@ import numpy as np
 from gapless._numba import kernel
 from gapless.trip.recording import Array
 
-SLOTS: Final = 16
+SLOTS: Final = 18
 """Readings that are kept."""
 APART: Final = 0.45
 """Readings closer than this are looked at as one [s]."""
@@ -41,22 +41,25 @@ class Slack(NamedTuple):
     bend: float = 0.0
 
 
+TURNED: Final = 0.5
+"""Where lengths of changes agree to this share of what is allowed, it is their direction that is wrong."""
+
+
 @kernel
 def excess(
-    times: Array, values: Array, variances: Array, n: int, now: float, z: Array, var: Array,
+    rows: Array, n: int, now: float, z: Array, raw: Array, var: Array,
     doubt: float, rate: float, bend: float, reach: float,
 ) -> float:  # fmt: skip
     """The largest disagreement of increments, over what is allowed.
 
     Parameters
     ----------
-    times : ndarray, shape (slots,)
-        Of the earlier readings, in order [s].
-    values, variances : ndarray, shape (slots, m)
+    rows : ndarray, shape (slots, 1 + 3 m)
+        Earlier readings in order: time [s]; less what was felt; as they were said; variance of noise.
     n : int
-        Slots in use.
+        Rows in use.
     now : float
-    z, var : ndarray, shape (m,)
+    z, raw, var : ndarray, shape (m,)
         The present reading.
     doubt : float
         Deviations that noise makes.
@@ -66,21 +69,27 @@ def excess(
     Returns
     -------
     float
-        Above 1 the channel did not move as was felt.
+        Above 1 the channel did not move as was felt. Where it moved by as much, but in another direction,
+        that is no contradiction: a receiver does not err so, a filter whose heading is wrong does.
     """
+    m = z.size
     worst = 0.0
     for i in range(n):
-        dt = now - times[i]
+        dt = now - rows[i, 0]
         if dt > reach:
             continue
+        off = noise = said = felt = 0.0
+        for j in range(min(m, 2)):
+            d, e = z[j] - rows[i, 1 + j], raw[j] - rows[i, 1 + m + j]
+            off, said, felt = off + d * d, said + e * e, felt + (e - d) ** 2
+            noise = max(noise, var[j] + rows[i, 1 + 2 * m + j])
         far = rate * dt + 0.5 * bend * dt * dt
-        off = noise = 0.0
-        for j in range(min(z.size, 2)):
-            off += (z[j] - values[i, j]) ** 2
-            noise = max(noise, var[j] + variances[i, j])
-        worst = max(worst, np.sqrt(off) / (doubt * np.sqrt(noise) + far))
-        if z.size == 3:  # heights are worse than the plane, and say nothing of it
-            off, noise = abs(z[2] - values[i, 2]), var[2] + variances[i, 2]
+        allowed = doubt * np.sqrt(noise) + far
+        off, said, felt = np.sqrt(off), np.sqrt(said), np.sqrt(felt)
+        if m == 1 or abs(said - felt) > TURNED * allowed or felt < allowed:
+            worst = max(worst, off / allowed)
+        if m == 3:  # heights are worse than the plane, and say nothing of it
+            off, noise = abs(z[2] - rows[i, 3]), var[2] + rows[i, 9]
             worst = max(worst, off / (doubt * np.sqrt(noise) + far))
     return worst
 
@@ -92,32 +101,36 @@ class Increments:
     Parameters
     ----------
     size : int
-        Components that are looked at together.
+        Components of a reading.
+    n : int
+        Readings that are kept.
+    rows : ndarray, shape (slots, 1 + 3 size)
+        As `excess` takes them; replaced, never changed.
     """
 
     size: int
     n: int = 0
-    times: Array = field(default_factory=lambda: np.zeros(SLOTS))
-    values: Array = field(default_factory=lambda: np.zeros((SLOTS, 0)))
-    variances: Array = field(default_factory=lambda: np.zeros((SLOTS, 0)))
+    rows: Array = field(default_factory=lambda: np.zeros((0, 0)))
 
     def __post_init__(self) -> None:
-        if self.values.shape[1] != self.size:
-            self.values, self.variances = np.zeros((2, SLOTS, self.size))
+        if not self.rows.size:
+            self.rows = np.zeros((SLOTS, 1 + 3 * self.size))
 
     @property
     def last(self) -> float:
         """When something was kept last [s]."""
-        return float(self.times[self.n - 1]) if self.n else -np.inf
+        return float(self.rows[self.n - 1, 0]) if self.n else -np.inf
 
-    def excess(self, time: float, value: Array, var: Array, slack: Slack, doubt: float = DOUBT) -> float:
+    def excess(
+        self, time: float, value: Array, raw: Array, var: Array, slack: Slack, doubt: float = DOUBT
+    ) -> float:
         """How far a reading is from having changed as was felt; see `excess`.
 
         Parameters
         ----------
         time : float
-        value, var : ndarray, shape (size,)
-            z + c and the variance of its noise.
+        value, raw, var : ndarray, shape (size,)
+            z + c, what was said in the same unit, and the variance of its noise.
         slack : Slack
         doubt : float
 
@@ -125,29 +138,47 @@ class Increments:
         -------
         float
         """
-        return float(
-            excess(
-                self.times, self.values, self.variances, self.n, time, value, var, doubt, slack.rate,
-                slack.bend, REACH,
-            )
-        )  # fmt: skip
+        return float(excess(self.rows, self.n, time, value, raw, var, doubt, slack.rate, slack.bend, REACH))
 
-    def keep(self, time: float, value: Array, var: Array) -> None:
+    def change(self, time: float, value: Array, raw: Array, span: tuple[float, float]) -> Array | None:
+        """How much was said and was felt since a reading of some seconds ago.
+
+        Parameters
+        ----------
+        time : float
+        value, raw : ndarray, shape (size,)
+        span : tuple of 2 float
+            Least and most seconds.
+
+        Returns
+        -------
+        ndarray, shape (2, size), or None
+            Change as said, and as felt.
+        """
+        ages = time - self.rows[: self.n, 0]
+        fit = np.flatnonzero((ages >= span[0]) & (ages <= span[1]))
+        if not len(fit):
+            return None
+        row, m = self.rows[fit[-1]], self.size
+        said = raw - row[1 + m : 1 + 2 * m]
+        return np.stack([said, said - (value - row[1 : 1 + m])])
+
+    def keep(self, time: float, value: Array, raw: Array, var: Array) -> None:
         """Remember a reading.
 
         Parameters
         ----------
         time : float
-        value, var : ndarray, shape (size,)
+        value, raw, var : ndarray, shape (size,)
         """
         if time - self.last < APART:
             return
-        if self.n == SLOTS or (self.n and time - self.times[0] > 2.0 * REACH):
-            self.times[:-1], self.values[:-1] = self.times[1:], self.values[1:]
-            self.variances[:-1] = self.variances[1:]
+        rows = self.rows.copy()
+        if self.n == SLOTS:
+            rows[:-1] = self.rows[1:]
             self.n -= 1
-        self.times[self.n], self.values[self.n], self.variances[self.n] = time, value, var
-        self.n += 1
+        rows[self.n] = np.concatenate([[time], value, raw, var])
+        self.rows, self.n = rows, self.n + 1
 
     def forget(self) -> None:
         """Start anew."""
@@ -155,4 +186,4 @@ class Increments:
 
     def copy(self) -> Self:
         """An independent copy."""
-        return type(self)(self.size, self.n, self.times.copy(), self.values.copy(), self.variances.copy())
+        return type(self)(self.size, self.n, self.rows)

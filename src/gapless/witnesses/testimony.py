@@ -24,7 +24,12 @@ COPY_DOUBT: Final = 0.4
 COPY_SHARE: Final = 0.15
 """Share of the slack that is left to a copy."""
 
-Ruling = Literal["use", "silence", "believe"]
+INSISTS: Final = 2.5
+"""What follows the motion and surprises the filter for so long, without a break, is right [s]."""
+OFTEN: Final = 3
+"""So many readings at least make that."""
+
+Ruling = Literal["use", "silence", "believe", "turn"]
 
 
 class Said(NamedTuple):
@@ -34,8 +39,10 @@ class Said(NamedTuple):
     ----------
     time : float
         [s]
-    raw : ndarray
+    logged : ndarray
         As it was logged: bits that repeat are told by it.
+    raw : ndarray, shape (m,)
+        The same in the unit of the innovation.
     value : ndarray, shape (m,)
         Innovation plus corrections so far, so that differences are those against the inertial motion.
     var : ndarray, shape (m,)
@@ -47,6 +54,7 @@ class Said(NamedTuple):
     """
 
     time: float
+    logged: Array
     raw: Array
     value: Array
     var: Array
@@ -75,8 +83,9 @@ class Testimony:
     silent: float = math.inf
     follows: float = -math.inf
     since: float = -math.inf
-    raw: Array = field(default_factory=lambda: np.zeros(0))
-    told: bool = False
+    surprises: int = 0
+    surprised: float = math.inf
+    logged: Array = field(default_factory=lambda: np.zeros(0))
     past: Increments = field(default_factory=lambda: Increments(0))
 
     def __post_init__(self) -> None:
@@ -92,7 +101,7 @@ class Testimony:
         """Whether it has followed the motion for a while, heard or not."""
         return self.heard or time - self.follows >= SETTLED
 
-    def hear(self, said: Said, slack: Slack, contradicted: bool) -> Ruling:
+    def hear(self, said: Said, slack: Slack, denied: bool, contradicted: bool) -> Ruling:
         """Rule on a reading.
 
         Parameters
@@ -100,8 +109,9 @@ class Testimony:
         said : Said
         slack : Slack
             Left to the filter.
-        contradicted : bool
-            Whether others are with the filter: then it is not believed however long it insists.
+        denied, contradicted : bool
+            Whether others are with the filter, so that what it says is not believed however long it insists:
+            while it is heard, and once it was silenced.
 
         Returns
         -------
@@ -115,23 +125,34 @@ class Testimony:
             if odd:
                 self.silent = self.follows = said.time
                 self.past.forget()
-            self.past.keep(said.time, said.value, said.var)
-            return "silence" if odd else "use"
+            self.past.keep(said.time, said.value, said.raw, said.var)
+            return "silence" if odd else self._insists(said, denied)
         if odd or said.rests or said.time - self.since >= REPEATS:  # a copy follows nothing
             self.follows = said.time
             self.past.forget()
-        self.past.keep(said.time, said.value, said.var)
+        self.past.keep(said.time, said.value, said.raw, said.var)
         return self._again(said, contradicted)
 
     def _odd(self, said: Said, slack: Slack) -> bool:
         """Whether it did not change as was felt."""
-        if self.raw.shape != said.raw.shape or (said.raw != self.raw).any():
+        if self.logged.shape != said.logged.shape or (said.logged != self.logged).any():
             self.since = said.time
-        self.raw = said.raw
+        self.logged = said.logged
         doubt = DOUBT
         if said.time - self.since >= REPEATS:
             doubt, slack = COPY_DOUBT, Slack(COPY_SHARE * slack.rate, COPY_SHARE * slack.bend)
-        return self.past.excess(said.time, said.value, said.var, slack, doubt) > 1.0
+        return self.past.excess(said.time, said.value, said.raw, said.var, slack, doubt) > 1.0
+
+    def _insists(self, said: Said, denied: bool) -> Ruling:
+        """Whether a channel that is heard has surprised the filter for too long to be an accident."""
+        if said.fits or denied or self.surprised == math.inf:
+            self.surprises, self.surprised = 0, said.time
+            return "use"
+        self.surprises += 1
+        if self.surprises < OFTEN or said.time - self.surprised < INSISTS:
+            return "use"
+        self.surprises, self.surprised = 0, said.time
+        return "believe"
 
     def _again(self, said: Said, contradicted: bool) -> Ruling:
         """Whether a silenced channel is heard again."""
