@@ -73,7 +73,7 @@ def assimilate(
     nis, s, hp = assess(b.p, ROW, n, o.z, o.H, o.R)
     verdict, ruling = Verdict(None), "use"
     if reading is not None:
-        ruling = _heard(state, reading, o, nis, journal)
+        ruling = _heard(state, settings, reading, o, nis, journal)
     elif channel == "zero_velocity" and state.bench.rests_in_vain(time, nis <= AT_REST):
         ruling = "believe"
     if ruling == "turn":
@@ -120,11 +120,16 @@ def assimilate(
     return True
 
 
-def _heard(state: State, reading: Reading, o: Observation, nis: float, journal: Journal) -> Ruling:
+def _heard(
+    state: State, settings: Settings, reading: Reading, o: Observation, nis: float, journal: Journal
+) -> Ruling:
     """What witnesses rule; a channel that falls silent, or is heard again, is written down."""
     bound = soft_bound(o.z.size)
     ruling = state.bench.hear(reading, o, nis, bound, state.belief)
     journal.heard(reading.channel, reading.time, ruling)
+    if state.bench.beside_the_road(reading.time):
+        _lose(state, settings)
+        return "believe"
     return ruling
 
 

@@ -335,7 +335,9 @@ class Navigator:
         motion = Motion(state.clock, dt, m[at.TICK_W :] / dt)
         m[at.TICK_DT :] = 0.0
         tilt = math.sqrt(max(0.5 * float(state.belief.p[6 * ROW + 6] + state.belief.p[7 * ROW + 7]), 0.0))
-        jolt = state.bench.jolts.feel(motion.force, state.belief.C_nb[2], tilt, dt)
+        c = state.belief.C_nb
+        turning = np.cross(motion.rate, c.T @ state.belief.v_n)  # a corner leans on the box, no blow does
+        jolt = state.bench.jolts.feel(motion.force - turning, c[2], tilt, dt)
         if jolt is not None:
             self._knocked(jolt)
         for name, constraint in state.constraints.items():

@@ -15,6 +15,7 @@ from gapless.trip.recording import Array
 from gapless.witnesses.askew import SPAN, Askew
 from gapless.witnesses.increments import Slack
 from gapless.witnesses.jolt import Jolts
+from gapless.witnesses.receiver import Story
 from gapless.witnesses.sign import Sign
 from gapless.witnesses.testimony import INSISTS, Ruling, Said, Testimony
 
@@ -30,6 +31,8 @@ AGREED: Final = 2.5
 """A channel that was believed so lately is a witness [s]."""
 LAXITY: Final = 0.3
 """Error of a velocity that is beyond what its deviation says [m/s]."""
+LOST: Final = 10.0
+"""A filter that denies a receiver's consistent story of a drive for so long is what is wrong [s]."""
 RADIUS: Final = 6.371e6
 """Of the earth, for differences of seconds [m]."""
 RESTS, DRIVES = 0.5, 3.0
@@ -55,6 +58,7 @@ class Bench:
     origin: Array | None = None
     turned: float = 0.0
     askew: Askew = field(default_factory=Askew)
+    story: Story = field(default_factory=Story)
     at_odds: float = math.inf
 
     def hear(self, reading: Reading, o: Observation, nis: float, bound: float, belief: Belief) -> Ruling:
@@ -85,6 +89,7 @@ class Bench:
         fits = nis <= bound
         raw = self._metres(reading) if channel == "position" else reading.value[part]
         var = o.R.diagonal()[part]
+        self._tell(channel, reading.time, raw, float(np.sqrt(var[:2].max())))
         said = Said(reading.time, reading.value, raw, value, var, fits, self._rests(reading, belief))
         ruling = mine.hear(said, self._slack(channel, belief), *self._against(channel, reading.time))
         if channel == "velocity":
@@ -95,6 +100,30 @@ class Bench:
             doubtful = ruling == "silence" and mine.follows < reading.time
             self.offset = o.z.copy() if doubtful else np.zeros(3)
         return ruling
+
+    def _tell(self, channel: str, time: float, raw: Array, sd: float) -> None:
+        """The receiver's own story goes on."""
+        if channel == "velocity":
+            self.story.moved(time, raw)
+        elif channel == "position":
+            self.story.stood(time, raw[:2], sd)
+
+    def beside_the_road(self, time: float) -> bool:
+        """Whether a receiver that tells one story of a drive has been silenced for too long: we are lost.
+
+        Parameters
+        ----------
+        time : float
+            [s]
+
+        Returns
+        -------
+        bool
+        """
+        silent = [one.silent for name, one in self.channels.items() if name in ("position", "velocity")]
+        if not silent or math.inf in silent or not self.story.drove:
+            return False
+        return time - max(*silent, self.story.since) > LOST
 
     def _turned(self, said: Said, ruling: Ruling) -> Ruling:
         """Whether accelerations are felt from another side than they are seen."""
@@ -164,6 +193,8 @@ class Bench:
         place = self.channels.get("position")
         if channel == "velocity" and place is not None and not place.following(time):
             return True, True  # one receiver: it does not know its speed while its place stands about
+        if channel == "velocity" and self.story.torn:
+            return True, True
         others = any(self._believed(name, time) for name in PATIENCE if name != channel)
         return others and channel == "odometer", others
 
@@ -182,5 +213,6 @@ class Bench:
         vars(new).update(vars(self))
         new.channels = {name: one.copy() for name, one in self.channels.items()}
         new.fitted, new.askew = dict(self.fitted), self.askew.copy()
+        new.story = self.story.copy()
         new.sign, new.jolts = self.sign.copy(), self.jolts.copy()
         return new

@@ -18,7 +18,7 @@ from gapless.units import DEG
 
 WINDOW: Final = 10
 """Ticks over which forces are averaged."""
-ANGLE: Final = 16.0 * DEG
+ANGLE: Final = 18.0 * DEG
 """Less than this a bump beside a brake may feign [rad]."""
 LONGER: Final = 0.4
 """Share of a brake's lengthening of the force that a box that was turned may show."""
