@@ -20,6 +20,7 @@ import sys
 import time
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import asdict, dataclass
+from itertools import pairwise
 from pathlib import Path
 from typing import NamedTuple, TypeVar
 
@@ -99,7 +100,7 @@ def silenced(solution: Solution, log: Recording) -> int:
         told = solution.innovations[channel]
         heard = told.time[np.isfinite(told.factor)]
         ends = np.append(heard, logged[-1])
-        for a, b in zip(ends[:-1], ends[1:], strict=True):
+        for a, b in pairwise(ends):
             between = logged[(logged > a + 1.0) & (logged < b - 1.0)]
             outside = ~solution.in_outage(between)
             count += bool(
@@ -126,7 +127,8 @@ def judged(solution: Solution, planted: Planted, clean: Recording) -> tuple[Erro
 
     Positions that moved for good: both places are to be held for half a minute, then the new one.
     """
-    assert clean.reference is not None and planted.faulted.reference is not None
+    assert clean.reference is not None
+    assert planted.faulted.reference is not None
     old = solution_errors(solution.trajectory, clean.reference)
     new = solution_errors(solution.trajectory, planted.faulted.reference)
     moved = ~np.isclose(clean.reference.lla, planted.faulted.reference.lla, rtol=0.0, atol=1e-12).all(axis=1)
@@ -193,12 +195,18 @@ def compare(
     except GaplessError:
         return
     assert spared.reference is not None
-    against = solution_errors(other.trajectory, spared.reference)
-    theirs = dict(zip(np.round(against.time, 3), against.horizontal, strict=True))
-    e = np.array([theirs.get(t, np.nan) for t in np.round(errors.time, 3)])
-    both = rows & np.isfinite(e)
-    if both.any():
-        found.largest, found.spared = float(errors.horizontal[both].max()), float(e[both].max())
+    held_against(found, errors, rows, solution_errors(other.trajectory, spared.reference), planted.start)
+
+
+def held_against(found: Found, errors: Errors, rows: np.ndarray, other: Errors, start: float) -> None:
+    """The largest errors of both, from the start of the fault, or of the other one where that is later."""
+    theirs = np.isfinite(other.horizontal) & (other.time >= start)
+    if theirs.any():
+        ours = rows & (errors.time >= other.time[theirs][0])
+        theirs &= other.time >= errors.time[ours][0] if ours.any() else False
+    if theirs.any():
+        found.largest = float(errors.horizontal[ours].max())
+        found.spared = float(other.horizontal[theirs].max())
 
 
 def all_of(work: Callable[[T], R], jobs: Sequence[T], processes: int, what: str) -> Iterator[R]:
@@ -256,7 +264,8 @@ def worst(found: Sequence[Found], count: int = 15) -> Iterator[str]:
     """The drives that fared worst against doing without."""
     yield f"\nthe worst {count} ratios of {len(found)} drives"
     for f in sorted((f for f in found if np.isfinite(f.ratio)), key=lambda f: -f.ratio)[:count]:
-        yield f"{f.ratio:7.2f} = {f.largest:7.1f} / {f.spared:6.1f} m, {100 * f.share:5.1f} % inside, {f.seed}: {f.story}"
+        errors = f"{f.ratio:7.2f} = {f.largest:7.1f} / {f.spared:6.1f} m"
+        yield f"{errors}, {100 * f.share:5.1f} % inside, {f.seed}: {f.story}"
     for f in found:
         if f.refused:
             yield f"refused, {f.kind} {f.seed}: {f.refused}"
@@ -298,9 +307,8 @@ def alarms(given: argparse.Namespace) -> list[Found]:
     found = list(all_of(fly, jobs, given.jobs, "hours without faults"))
     hours = sum(not f.refused for f in found) * given.seconds / 3600.0
     mute, said = sum(f.silenced for f in found), sum(f.said for f in found)
-    print(
-        f"{hours:.1f} h without faults: {mute} channels silenced, {said} notices; refused {sum(bool(f.refused) for f in found)}"
-    )
+    no = sum(bool(f.refused) for f in found)
+    print(f"{hours:.1f} h without faults: {mute} channels silenced, {said} notices; {no} drives refused")
     print("silenced with seeds", ", ".join(str(f.seed) for f in found if f.silenced) or "none")
     return found
 
