@@ -50,8 +50,9 @@ def as_asked(log: Recording, span: Span) -> Span:
 
 
 def throughout(log: Recording, span: Span) -> Span:
-    """From the first sample to the last."""
-    return log.start, math.inf
+    """From the first stamp to the last."""
+    stamps = (log.imu.time, log.gnss.time, *(() if log.odometer is None else (log.odometer.time,)))
+    return min(float(time[0]) for time in stamps if len(time)), math.inf
 
 
 @dataclass(frozen=True)

@@ -63,14 +63,15 @@ def clips(log: Recording, span: Span, size: float, chance: Generator) -> Pair:
     imu = log.imu
     time, speed = ahead(log)
     at = span[0] + np.cumsum(chance.uniform(1.0, 4.0, 200))
-    at = at[(at < span[1]) & (np.abs(np.interp(at, time, speed)) > 2.0)]
+    at = at[(at < span[1] - _BUMP) & (np.abs(np.interp(at, time, speed)) > 2.0)]
     felt = np.zeros(len(imu))
     for start in at:
         rows = struck(imu.time, (start, start + _BUMP))
         felt[rows] = size * np.sin(2.0 * np.pi * (imu.time[rows] - start) / _BUMP)
     force = imu.dvel / imu.dt[:, None] + felt[:, None] * np.array([0.3, 0.0, 1.0])
-    kept = np.where(struck(imu.time, span)[:, None], np.clip(force, -_FULL_SCALE, _FULL_SCALE), force)
-    return _anew(log, replace(imu, dvel=kept * imu.dt[:, None]), span[1])
+    kept = np.clip(force, -_FULL_SCALE, _FULL_SCALE) * imu.dt[:, None]
+    rows = struck(imu.time, span)[:, None]
+    return _anew(log, replace(imu, dvel=np.where(rows, kept, imu.dvel)), span[1])
 
 
 def _turned(axis: int) -> Plant:
