@@ -1,4 +1,6 @@
-"""Real recordings with each fault put into them: `benchmarks/faults.py --recordings`.
+"""Real recordings with each fault put into them.
+
+    python benchmarks/faulty_recordings.py [DIR ...], or benchmarks/faults.py --recordings DIR ...
 
 Each is cut some minutes after the fault, which begins where the car drives; an outage of a minute follows
 90 s later. Truth is the recording's own, or its fixes as they were.
@@ -6,6 +8,7 @@ Each is cut some minutes after the fault, which begins where the car drives; an 
 
 from __future__ import annotations
 
+import argparse
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import partial
@@ -15,6 +18,7 @@ from typing import NamedTuple
 import numpy as np
 from disturbed import felt, late
 from faults import FOLLOWED, SETTLED, Found, all_of, held_against, notices, silenced, table, within, worst
+from outages import recordings
 
 from gapless.errors import GaplessError
 from gapless.evaluation import score
@@ -162,3 +166,17 @@ def recorded(folders: list[Path], system: str, processes: int) -> list[Found]:
 def _told(found: list[Found]) -> Iterator[str]:
     yield from table(found)
     yield from worst(found)
+
+
+def main() -> None:
+    """Print the table."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
+    parser.add_argument("recordings", nargs="*", type=Path)
+    parser.add_argument("--system", default="auto")
+    parser.add_argument("--jobs", type=int, default=2, help="processes")
+    given = parser.parse_args()
+    recorded(list(recordings(given.recordings)), given.system, given.jobs)
+
+
+if __name__ == "__main__":
+    main()
