@@ -118,8 +118,10 @@ def within(errors: Errors) -> np.ndarray:
     """Rows whose stated 95 % ellipse holds the truth; none whose ellipse is no ellipse."""
     (n, e), c = errors.position[:, :2].T, errors.covariance
     a, b, d = c[:, 0, 0], c[:, 0, 1], c[:, 1, 1]
-    room = a * d - b**2
-    return (room > 0.0) & (d * n**2 - 2.0 * b * n * e + a * e**2 < chi_square_quantile(0.95, 2) * room)
+    with np.errstate(over="ignore", invalid="ignore"):  # an ellipse of 1e200 m is none
+        room = a * d - b**2
+        far = d * n**2 - 2.0 * b * n * e + a * e**2
+        return (room > 0.0) & np.isfinite(room) & (far < chi_square_quantile(0.95, 2) * room)
 
 
 def judged(solution: Solution, planted: Planted, clean: Recording) -> tuple[Errors, np.ndarray, np.ndarray]:
