@@ -157,6 +157,15 @@ def moved_outages(outages: Sequence[Outage], by: float) -> list[Outage]:
     return [Outage(max(o.start - by, 0.0), o.end - by) for o in outages if o.end > by]
 
 
+def story(job: Job, planted: Planted, outages: Sequence[Outage]) -> str:
+    """What happened, when, and how bad it was."""
+    told = [
+        f"{k} {size:.3g} {FAULTS[k].unit} {a:.0f}-{b:.0f} s"
+        for k, size, (a, b) in zip(job.kinds, planted.sizes, planted.spans, strict=True)
+    ]
+    return ", ".join([*told, *(f"outage {o.start:.0f}:{o.end:.0f}" for o in outages)])
+
+
 def fly(job: Job) -> Found:
     """One drive with its faults, and without what lies."""
     sensors = {FAULTS[k].sensor for k in job.kinds}
@@ -165,11 +174,8 @@ def fly(job: Job) -> Found:
     first = chance.uniform(130.0, 180.0)
     planted = plant(job.kinds, clean, [first, first + chance.uniform(0.0, 60.0)][: len(job.kinds)], job.seed)
     outages = outage_of(job, planted if job.kinds else None, clean)
-    found = Found(planted.kind or job.of, job.seed)
-    found.story = " ".join(
-        f"{k} {size:.3g} {FAULTS[k].unit} {a:.0f}-{b:.0f} s"
-        for k, size, (a, b) in zip(job.kinds, planted.sizes, planted.spans, strict=True)
-    ) + "".join(f" outage {o}" for o in outages)
+    found = Found(" + ".join([*job.kinds[:1], *["another"] * (len(job.kinds) - 1)]) or job.of, job.seed)
+    found.story = story(job, planted, outages)
     try:
         solution = fuse(planted.faulted, named(job.system), outages)
     except GaplessError as refusal:
@@ -229,7 +235,7 @@ def all_of(work: Callable[[T], R], jobs: Sequence[T], processes: int, what: str)
 def table(found: Sequence[Found]) -> Iterator[str]:
     """A line a kind, and all of them."""
     yield (
-        f"{'':26}{'n':>4}{'no':>4}{'inside':>8}{'since':>8}{'worst':>8}{'seed':>6}{'largest':>9}"
+        f"{'':36}{'n':>4}{'no':>4}{'inside':>8}{'since':>8}{'worst':>8}{'seed':>6}{'largest':>9}"
         f"{'ratio':>7}{'P95':>7}{'worst':>8}{'seed':>6}{'said':>6}{'mute':>6}"
     )
     for kind in dict.fromkeys(f.kind for f in found):
@@ -240,7 +246,7 @@ def table(found: Sequence[Found]) -> Iterator[str]:
 def line(name: str, found: Sequence[Found]) -> str:
     """Figures of one kind."""
     ran = [f for f in found if not f.refused]
-    start = f"{name[:26]:26}{len(found):4}{len(found) - len(ran):4}"
+    start = f"{name[:36]:36}{len(found):4}{len(found) - len(ran):4}"
     if not ran:
         return start
     inside, since = share(ran, "inside", "rows"), share(ran, "later_inside", "later")
@@ -278,13 +284,18 @@ def planned(given: argparse.Namespace) -> list[Job]:
     kinds = given.kinds.split(",") if given.kinds else list(FAULTS)
     if unknown := sorted(set(kinds) - set(FAULTS)):
         raise SystemExit(f"no fault {', '.join(unknown)}; the faults are {', '.join(FAULTS)}")
-    sets: list[tuple[str, ...]] = [(k,) for k in kinds]
-    if given.pairs:
-        chance = np.random.default_rng(given.first)
-        fit = [k for k in FAULTS if FAULTS[k].drive in ("any", "urban")]
-        sets = [(k, str(chance.choice([f for f in fit if f != k]))) for k in kinds if k in fit]
-    seeds = range(given.first, given.first + given.drives)
-    return [Job(s, drive_of(s), seed, given.seconds, given.system) for s in sets for seed in seeds]
+    jobs = []
+    for kind in kinds:
+        for seed in range(given.first, given.first + given.drives):
+            both = (kind, another(kind, seed)) if given.pairs else (kind,)
+            jobs.append(Job(both, drive_of(both), seed, given.seconds, given.system))
+    return jobs
+
+
+def another(kind: str, seed: int) -> str:
+    """A second fault, by chance; one that can happen in the drive of the first."""
+    fit = [k for k, f in FAULTS.items() if k != kind and f.drive in ("any", FAULTS[kind].drive)]
+    return str(np.random.default_rng([seed, *kind.encode()]).choice(fit))
 
 
 def drive_of(kinds: Sequence[str]) -> str:
