@@ -135,6 +135,7 @@ def fly(job: Job) -> Found | None:
         return found
     found.said, found.silenced = notices(solution), silenced(solution, spoilt.faulted)
     known = np.isfinite(errors.horizontal) & (errors.time > solution.trajectory.time[0] + SETTLED)
+    known &= (errors.time < at) | (errors.time >= spoilt.counts_from)
     since = known & (errors.time >= spoilt.counts_from)
     found.rows, found.inside = int(known.sum()), int(inside[known].sum())
     found.later, found.later_inside = int(since.sum()), int(inside[since].sum())
