@@ -360,7 +360,8 @@ def main() -> None:
     else:
         found = clean(given) if given.clean else faults(given)
     if given.json:
-        given.json.write_text(json.dumps([asdict(f) for f in found], indent=1))
+        known = [{k: None if v != v else v for k, v in asdict(f).items()} for f in found]  # JSON has no NaN
+        given.json.write_text(json.dumps(known, indent=1))
 
 
 if __name__ == "__main__":
