@@ -53,7 +53,9 @@ if TYPE_CHECKING:
     help="All outages of a plan in one run, or each alone.",
 )  # fmt: skip
 @click.option(
-    "--simulated", metavar="PROFILE", help="Instead of recordings: carpark, highway, static, urban, wang2018."
+    "--simulated",
+    metavar="PROFILE",
+    help="Instead of recordings: carpark, highway, mixed, static, urban, wang2018.",
 )
 @click.option(
     "--grade", default="consumer", show_default=True, metavar="NAME", help="IMU of simulated drives."

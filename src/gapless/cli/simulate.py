@@ -15,7 +15,7 @@ from gapless.cli.options import out_option, outage_options
     default="urban",
     show_default=True,
     metavar="NAME",
-    help="How it is driven: carpark, highway, static, urban or wang2018.",
+    help="How it is driven: carpark, highway, mixed, static, urban or wang2018.",
 )
 @click.option(
     "--grade",

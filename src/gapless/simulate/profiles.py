@@ -127,6 +127,22 @@ def highway(duration: float, rng: Generator) -> tuple[Segment, ...]:
     return _take(_highway(rng), duration)
 
 
+def mixed(duration: float, rng: Generator) -> tuple[Segment, ...]:
+    """Town, motorway, town and so on, a few minutes each.
+
+    Parameters
+    ----------
+    duration : float
+        [s]
+    rng : numpy.random.Generator
+
+    Returns
+    -------
+    tuple of Segment
+    """
+    return _take(_mixed(rng), duration)
+
+
 def carpark(duration: float, rng: Generator) -> tuple[Segment, ...]:
     """Creeping through a car park: 5-12 km/h, tight turns on ramps and aisles, short waits.
 
@@ -146,6 +162,7 @@ def carpark(duration: float, rng: Generator) -> tuple[Segment, ...]:
 PROFILES: Final[dict[str, Profile]] = {
     "carpark": carpark,
     "highway": highway,
+    "mixed": mixed,
     "static": static,
     "urban": urban,
     "wang2018": wang2018,
@@ -250,6 +267,23 @@ def _highway(rng: Generator) -> Iterator[Segment]:
             yield from _wiggle(
                 rng.choice([-1.0, 1.0]) * rng.uniform(1.5, 3.0) * DEG, rng.uniform(2.0, 3.5), slope
             )
+
+
+def _mixed(rng: Generator) -> Iterator[Segment]:
+    while True:
+        for drive in (_urban, _highway):
+            yield from _some(drive(rng), rng.uniform(90.0, 240.0))
+
+
+def _some(drive: Iterator[Segment], seconds: float) -> Iterator[Segment]:
+    """The first part of a drive that begins at rest, and a stop after it."""
+    speed = gone = 0.0
+    while gone < seconds:
+        s = next(drive)
+        speed, gone = speed + s.acceleration * s.duration, gone + s.duration
+        yield s
+    yield from _change(speed, 0.0, 1.5)
+    yield Segment(5.0)
 
 
 def _carpark(rng: Generator) -> Iterator[Segment]:
