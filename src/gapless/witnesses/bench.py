@@ -12,6 +12,7 @@ from gapless.inertial.belief import Belief
 from gapless.measurements.base import Observation
 from gapless.trip.events import Reading
 from gapless.trip.recording import Array
+from gapless.units import DEG
 from gapless.witnesses.askew import SPAN, Askew
 from gapless.witnesses.increments import Slack
 from gapless.witnesses.jolt import Jolts
@@ -19,7 +20,7 @@ from gapless.witnesses.receiver import Story
 from gapless.witnesses.sign import Sign
 from gapless.witnesses.testimony import INSISTS, Ruling, Said, Testimony
 
-PATIENCE: Final = {"position": 25.0, "velocity": 20.0, "odometer": 60.0}
+PATIENCE: Final = {"position": 30.0, "velocity": 20.0, "odometer": 60.0}
 """By channel: for so long must what follows the motion contradict the filter to be believed [s]."""
 HORIZONTAL: Final = {"position": slice(0, 3), "velocity": slice(0, 2), "odometer": slice(0, 1)}
 """Components that are compared; a vertical velocity is what receivers are worst at."""
@@ -31,7 +32,11 @@ AGREED: Final = 2.5
 """A channel that was believed so lately is a witness [s]."""
 LAXITY: Final = 0.3
 """Error of a velocity that is beyond what its deviation says [m/s]."""
-LOST: Final = 10.0
+FITTING: Final = 18.0 * DEG
+"""What is askew by less may be a clock, as long as velocities fit [rad]."""
+ACCUSED: Final = 1.5
+"""Positions that go with velocities that were silenced so long ago are silenced too [s]."""
+LOST: Final = 25.0
 """A filter that denies a receiver's consistent story of a drive for so long is what is wrong [s]."""
 RADIUS: Final = 6.371e6
 """Of the earth, for differences of seconds [m]."""
@@ -120,10 +125,10 @@ class Bench:
         -------
         bool
         """
-        silent = [one.silent for name, one in self.channels.items() if name in ("position", "velocity")]
-        if not silent or math.inf in silent or not self.story.drove:
+        both = [one for name, one in self.channels.items() if name in ("position", "velocity")]
+        if any(one.heard or one.copies(time) for one in both) or not self.story.drove:
             return False
-        return time - max(*silent, self.story.since) > LOST
+        return time - max(self.story.since, *(one.silent for one in both)) > LOST
 
     def _turned(self, said: Said, ruling: Ruling) -> Ruling:
         """Whether accelerations are felt from another side than they are seen."""
@@ -132,8 +137,8 @@ class Bench:
         if change is None or ruling == "silence" or said.time - self.askew.time < 0.9:
             return ruling
         self.askew.hear(said.time, *change)
-        self.turned = self.askew.angle if not said.fits else 0.0
-        if not self.turned:
+        self.turned = self.askew.angle
+        if abs(self.turned) < (FITTING if said.fits else 0.0) or not self.turned:
             return ruling
         self.forget()
         return "turn"
@@ -186,17 +191,22 @@ class Bench:
         said = math.hypot(*reading.value[:2]) if reading.channel == "velocity" else abs(reading.value[0])
         return said < RESTS and math.hypot(*belief.v_n[:2]) > DRIVES
 
-    def _against(self, channel: str, time: float) -> tuple[bool, bool]:
-        """Whether others are with the filter against one that is heard, and against one that was silenced."""
+    def _against(self, channel: str, time: float) -> tuple[bool, bool, bool]:
+        """Whether others are with the filter against one that is heard, against one that was silenced.
+
+        And whether it is a position that tells the story of velocities that were silenced.
+        """
         if channel == "position":
-            return False, False
+            speed = self.channels.get("velocity")
+            lied = speed is not None and time - speed.silent > ACCUSED and not speed.following(time)
+            return False, False, lied and time - self.story.since > ACCUSED
         place = self.channels.get("position")
         if channel == "velocity" and place is not None and not place.following(time):
-            return True, True  # one receiver: it does not know its speed while its place stands about
+            return True, True, False  # one receiver: it does not know its speed while its place stands about
         if channel == "velocity" and self.story.torn:
-            return True, True
+            return True, True, False
         others = any(self._believed(name, time) for name in PATIENCE if name != channel)
-        return others and channel == "odometer", others
+        return others and channel == "odometer", others, False
 
     def _believed(self, channel: str, time: float) -> bool:
         mine = self.channels.get(channel)

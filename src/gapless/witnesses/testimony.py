@@ -97,11 +97,15 @@ class Testimony:
         """Whether it is not silenced."""
         return self.silent == math.inf
 
+    def copies(self, time: float) -> bool:
+        """Whether it repeats itself to the bit."""
+        return time - self.since >= REPEATS
+
     def following(self, time: float) -> bool:
         """Whether it has followed the motion for a while, heard or not."""
         return self.heard or time - self.follows >= SETTLED
 
-    def hear(self, said: Said, slack: Slack, denied: bool, contradicted: bool) -> Ruling:
+    def hear(self, said: Said, slack: Slack, denied: bool, contradicted: bool, accused: bool) -> Ruling:
         """Rule on a reading.
 
         Parameters
@@ -112,6 +116,8 @@ class Testimony:
         denied, contradicted : bool
             Whether others are with the filter, so that what it says is not believed however long it insists:
             while it is heard, and once it was silenced.
+        accused : bool
+            Whether it tells the story of a channel that lied.
 
         Returns
         -------
@@ -120,14 +126,14 @@ class Testimony:
         """
         if said.time - self.past.last > FORGETS:
             self.__init__(self.size, self.patience)  # type: ignore[misc]
-        odd = self._odd(said, slack)
+        odd = self._odd(said, slack) or accused
         if self.heard:
             if odd:
                 self.silent = self.follows = said.time
                 self.past.forget()
             self.past.keep(said.time, said.value, said.raw, said.var)
             return "silence" if odd else self._insists(said, denied)
-        if odd or said.rests or said.time - self.since >= REPEATS:  # a copy follows nothing
+        if odd or said.rests or self.copies(said.time):  # a copy follows nothing
             self.follows = said.time
             self.past.forget()
         self.past.keep(said.time, said.value, said.raw, said.var)
@@ -139,7 +145,9 @@ class Testimony:
             self.since = said.time
         self.logged = said.logged
         doubt = DOUBT
-        if said.time - self.since >= REPEATS:
+        if self.copies(said.time):
+            if not said.fits:
+                return True
             doubt, slack = COPY_DOUBT, Slack(COPY_SHARE * slack.rate, COPY_SHARE * slack.bend)
         return self.past.excess(said.time, said.value, said.raw, said.var, slack, doubt) > 1.0
 
