@@ -97,6 +97,7 @@ def _tidy(root: Path) -> None:
                 shutil.rmtree(old, ignore_errors=True)
 
 
+_dumps: Callable[[Any], bytes] = dumps
 _said: set[str] = set()
 
 
@@ -109,7 +110,7 @@ def _say(kind: str, line: str) -> None:
         print(f"{chr(13)}\x1b[K" * sys.stderr.isatty() + f"gapless: {line}", file=sys.stderr, flush=True)
 
 
-class _Cache(FunctionCache):  # type: ignore[misc]  # numba has no types
+class _Cache(FunctionCache):
     """Where a dispatcher looks for a compiled kernel, and leaves one."""
 
     def __init__(self, function: Callable[..., Any]) -> None:
@@ -117,7 +118,7 @@ class _Cache(FunctionCache):  # type: ignore[misc]  # numba has no types
         self._base = f"{function.__module__.removeprefix('gapless.')}.{function.__qualname__}"
         self._impl = object.__new__(CompileResultCacheImpl)  # its start looks for a place to write to
         self._cache_path = ""
-        self.enable()
+        self._enabled = True
 
     def flush(self) -> None:
         """Forget nothing: what a file holds is told by its name."""
@@ -144,7 +145,7 @@ class _Cache(FunctionCache):  # type: ignore[misc]  # numba has no types
         """Keep a compiled kernel where that is possible."""
         if data.library.has_dynamic_globals or any(not one.can_cache for one in data.lifted):
             return
-        content = dumps(self._impl.reduce(data))
+        content = _dumps(self._impl.reduce(data))
         failed = None
         for place in _places():
             try:
@@ -159,7 +160,8 @@ class _Cache(FunctionCache):  # type: ignore[misc]  # numba has no types
         _say("place", f"kernels {told}; they are compiled in memory, in each run")
 
     def _named(self, sig: Any, codegen: Any) -> str:
-        told = hashlib.sha256(repr(self._index_key(str(sig), codegen)).encode()).hexdigest()
+        key: Any = self._index_key  # numba has no types
+        told = hashlib.sha256(repr(key(str(sig), codegen)).encode()).hexdigest()
         return f"{self._base}.{told[:16]}.nbc"
 
 

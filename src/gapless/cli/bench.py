@@ -101,7 +101,6 @@ def bench(
     Files that gapless did not write are in the way, but with --force.
     """
     from gapless.cli.output import check_folder, write_together
-
     from gapless.laboratory.folder import FILES
 
     arguments = {k: v for k, v in click.get_current_context().params.items() if k != "force"}

@@ -14,7 +14,7 @@ from gapless.io.log import Log
 from gapless.trip.recording import Array, Note
 
 FAR: Final = 900.0
-"""Least leap [s] between a stray stamp and the rest of its log: longer than receivers are silent on a drive."""
+"""Least leap [s] between a stray stamp and the rest: longer than receivers are silent on a drive."""
 FAR_IMU: Final = 10.0
 """The same of an IMU, which is not silent: a few samples by themselves measure nothing."""
 _USUAL: Final = 1000.0

@@ -74,7 +74,7 @@ def test_files_of_a_run_are_replaced_together_or_not_at_all(
     (tmp_path / "old").mkdir()
     (tmp_path / "old" / "solution.parquet").write_text("old")
     for name in ("old", "new"):
-        said = shell("fuse", drive, "--csv", "--out", tmp_path / name, code=code)
+        said = shell("fuse", drive, "--csv", "--force", "--out", tmp_path / name, code=code)
         assert said.stderr == f"gapless: {line}\n"
     assert [p.name for p in tmp_path.rglob("*")] == ["old", "solution.parquet"]
     assert (tmp_path / "old" / "solution.parquet").read_text() == "old"
