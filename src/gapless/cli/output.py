@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 
@@ -29,6 +30,8 @@ def check_folder(folder: Path, names: Iterable[str] = (), force: bool = False) -
         if part.exists():
             if not part.is_dir():
                 raise ConfigError(f"{part}: is a file, not a folder; choose another --out")
+            if not os.access(part, os.W_OK):
+                raise ConfigError(f"{part}: cannot be written to; choose another --out")
             break
     if folder.is_dir():
         from gapless.io.marks import check_ours
@@ -55,8 +58,8 @@ def check_recording(folder: Path, origin: str, force: bool) -> None:
     from gapless.io.writers.recording import SENSORS, SETTINGS, check_free
 
     files = [*(f"{sensor}.parquet" for sensor in SENSORS), SETTINGS]
-    check_folder(folder, files, force)
     check_free(folder, files)
+    check_folder(folder, files, force)
     there = next((folder / name for name in files if (folder / name).exists()), None)
     if there is not None and not force and origin_in(folder / SETTINGS) != origin:
         raise ConfigError(

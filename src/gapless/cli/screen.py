@@ -17,8 +17,8 @@ from gapless.errors import ConfigError
 _STAND_INS: Final = {
     "\u00a0": " ", "\u202f": " ", "\u2009": " ", "\u2212": "-", "\u2013": "-", "\u2014": "-", "\u2026": "...",
     "\u2018": "'", "\u2019": "'", "\u201c": '"', "\u201d": '"', "·": "-", "±": "+/-", "°": " deg",
-    "\u00d7": "x", "²": "^2", "³": "^3", "√": "sqrt", "\u03c3": "sigma", "χ": "chi", "µ": "u", "μ": "u", "≤": "<=",
-    "≥": ">=", "→": "->", "≈": "~", "Δ": "d", "φ": "phi", "∞": "inf", "⁻": "^-", "¹": "1",
+    "\u00d7": "x", "²": "^2", "³": "^3", "√": "sqrt", "\u03c3": "sigma", "χ": "chi", "µ": "u", "μ": "u",
+    "≤": "<=", "≥": ">=", "→": "->", "≈": "~", "Δ": "d", "φ": "phi", "∞": "inf", "⁻": "^-", "¹": "1",
 }  # fmt: skip
 """What is written where an encoding has no such character; "?" for all others."""
 _CONTROL: Final = re.compile("[\x00-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069\ud800-\udfff]")

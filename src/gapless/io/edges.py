@@ -48,10 +48,9 @@ def without_strays(log: Log, far: float, notes: list[Note]) -> Log:
     few = min(max(_FEW, n // _SHARE), n // 5)
     if few == 0:
         return log
-    step = np.abs(np.diff(log["time"][known]))
-    leaps = 1 + np.flatnonzero(step > max(far, _USUAL * float(np.median(step))))
-    begin = int(leaps[leaps <= few].max(initial=0))
-    end = int(leaps[leaps >= n - few].min(initial=n))
+    time = log["time"][known]
+    far = max(far, _USUAL * float(np.median(np.abs(np.diff(time)))))
+    begin, end = _strays(time, few, far), n - _strays(time[::-1], few, far)
     for name, rows in (("first", known[:begin]), ("last", known[end:])):
         if len(rows):
             what = f"stamps at the {name} rows far from all others ({log['time'][rows[0]]:.6g} s); dropped"
@@ -63,8 +62,17 @@ def without_strays(log: Log, far: float, notes: list[Note]) -> Log:
     return log.take(keep)
 
 
+def _strays(time: Array, few: int, far: float) -> int:
+    """How many of a log's first rows are far from all that follow: told from within, outwards."""
+    near, wild = float(np.median(time[few : 2 * few + 1])), np.zeros(few, bool)
+    for k in range(few - 1, -1, -1):
+        wild[k] = abs(time[k] - near) > far
+        near = near if wild[k] else float(time[k])
+    return few if wild.all() else int(np.argmin(wild))
+
+
 def of_the_trip(log: Log, imu: Array, notes: list[Note]) -> Log:
-    """Rows but for a few that were stamped more than a day before the IMU's first or after its last.
+    """Rows but for a few at either edge, stamped more than a day before the IMU's first or after its last.
 
     Parameters
     ----------
@@ -84,6 +92,7 @@ def of_the_trip(log: Log, imu: Array, notes: list[Note]) -> Log:
         return log
     time = log["time"]
     away = np.isfinite(time) & ((time < imu[0] - _DAY) | (time > imu[-1] + _DAY))
+    away = np.logical_and.accumulate(away) | np.logical_and.accumulate(away[::-1])[::-1]
     if not away.any() or away.sum() > len(log) // 5:
         return log
     notes.append(log.note("rows more than a day before or after the IMU's dropped", int(away.sum())))

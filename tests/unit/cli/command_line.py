@@ -6,6 +6,9 @@ from gapless.cli import gapless
 _numba._said.add("compiling")  # whether kernels are there is the machine's affair, not a test's
 
 
+COMPILING = "gapless: compiling kernels, once per version (about ten seconds)\n"
+
+
 class Shell:
     """Runs the command line in this process."""
 

@@ -47,8 +47,8 @@ def write_recording(recording: Recording, folder: str | os.PathLike[str], force:
     """
     folder = Path(folder)
     files = recording_files(recording)
-    check_ours((folder / name for name in files), force, cure="force=True")
     check_free(folder, files)
+    check_ours((folder / name for name in files), force, cure="force=True")
     with together(folder / name for name in files) as lent:
         for write, temporary in zip(files.values(), lent, strict=True):
             write(temporary)
