@@ -13,7 +13,7 @@ demo: $(VENV)/.run  ## simulate a drive and fuse it through three outages
 	@rm -rf $(DEMO)/drive
 	@$(BIN)/gapless simulate --duration 800 --mounting 1 -2 4 --late 0.15 --wheels 1 --out $(DEMO)/drive
 	@echo
-	@$(BIN)/gapless fuse $(DEMO)/drive --outages every=180,length=60,first=240 --out $(DEMO)
+	@$(BIN)/gapless fuse $(DEMO)/drive --outages every=180,length=60,first=240 --force --out $(DEMO)
 	@echo
 	@echo "Open this in a browser: $(CURDIR)/$(DEMO)/report.html"
 

@@ -8,6 +8,7 @@ from typing import Any
 
 import click
 
+from gapless.cli import interrupt, screen
 from gapless.cli.bench import bench
 from gapless.cli.convert import convert
 from gapless.cli.fuse import fuse
@@ -22,8 +23,6 @@ from gapless.version import __version__
 
 REFUSED = 2
 """Exit code where the input, the options or the disk cannot serve."""
-INTERRUPTED = 130
-"""Exit code after Ctrl-C, as shells have it: 128 + SIGINT."""
 
 
 class Verbs(click.Group):
@@ -55,20 +54,19 @@ class Verbs(click.Group):
             What the verb returns.
         """
         try:
-            return super().invoke(ctx)
+            with interrupt.listening():
+                return super().invoke(ctx)
         except GaplessError as error:
             _leave(ctx, str(error), REFUSED)
-        except BrokenPipeError:  # the reader of our output has gone; click ends quietly
-            raise
         except OSError as error:
             named = f"{error.filename}: " if error.filename else ""
             _leave(ctx, f"{named}{error.strerror or error}", REFUSED)
         except KeyboardInterrupt:
-            _leave(ctx, "interrupted; no file was changed", INTERRUPTED)
+            _leave(ctx, interrupt.UNCHANGED, interrupt.INTERRUPTED)
 
 
 def _leave(ctx: click.Context, line: str, code: int) -> None:
-    click.echo(f"gapless: {' '.join(line.split())}", err=True)
+    screen.say(f"gapless: {' '.join(line.split())}", err=True)
     ctx.exit(code)
 
 
@@ -97,9 +95,12 @@ def main() -> None:
     ours uses; nothing else in this process wants it, so it is not found. A run leaves no cycles worth
     collecting, neither on its way nor at its end: 0.25 s of two.
     """
+    interrupt.prepare()
+    screen.prepare()
     sys.modules.setdefault("scipy", None)  # type: ignore[arg-type]
     gc.disable()
     try:
         gapless(prog_name="gapless")
     finally:
         gc.freeze()
+        screen.finish()

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from gapless.cli.options import out_option
+from gapless.cli.options import force_option, out_option
+from gapless.cli.screen import say
 
 if TYPE_CHECKING:
     from gapless.laboratory.methods import Method
@@ -75,6 +76,7 @@ if TYPE_CHECKING:
 )  # fmt: skip
 @click.option("--jobs", type=click.IntRange(min=1), default=2, show_default=True, help="Processes.")
 @out_option
+@force_option
 def bench(
     recordings: tuple[Path, ...],
     systems: str,
@@ -91,17 +93,20 @@ def bench(
     seed: int,
     jobs: int,
     out: Path,
+    force: bool,
 ) -> None:
     """Score systems on withheld stretches of GNSS, all on the same ones.
 
     Each RECORDING is a folder as for `gapless fuse`. DIR receives report.html,
     the tables (text, Markdown, LaTeX, JSON) and every outage, error and run as
-    Parquet; files of these names are replaced, once the new ones are complete.
+    Parquet; those of an earlier bench are replaced, once the new ones are complete.
+    Files that gapless did not write are in the way, but with --force.
     """
     from gapless.cli.output import check_folder, write_together
+    from gapless.laboratory.folder import FILES
 
-    arguments = dict(click.get_current_context().params)
-    check_folder(out)
+    arguments = {k: v for k, v in click.get_current_context().params.items() if k != "force"}
+    check_folder(out, (*FILES, "report.html"), force)
     sources = _sources(recordings, simulated, grade, runs, duration, seed)
     methods = _methods(systems)
     scenarios = _scenarios(plans, length, every, shifts, first)
@@ -123,17 +128,19 @@ def bench(
         )
     files = writers(results, {name: _told(value) for name, value in arguments.items()})
     write_together(out, files)
-    page = write_bench_report(out)
-    click.echo(as_text(tables(results), get_terminal_size((140, 24)).columns))
-    click.echo(f"{len(results.outages)} outages scored in {results.seconds:.0f} s")
-    click.echo("\n".join(f"wrote {path}" for path in (*(out / name for name in files), page)))
+    page = write_bench_report(out, force=force)
+    say(*as_text(tables(results), get_terminal_size((140, 24)).columns).split("\n"))
+    say(f"{len(results.outages)} outages scored in {results.seconds:.0f} s")
+    say(*(f"wrote {path}" for path in (*(out / name for name in files), page)))
 
 
 def _told(value: Any) -> Any:
     """An argument for JSON."""
+    from gapless.io.log import readable
+
     if isinstance(value, tuple):
         return [_told(one) for one in value]
-    return str(value) if isinstance(value, Path) else value
+    return readable(str(value)) if isinstance(value, Path) else value
 
 
 def _sources(

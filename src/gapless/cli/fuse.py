@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from gapless.cli.options import job, job_options, out_option
+from gapless.cli.options import force_option, job, job_options, out_option
+from gapless.cli.screen import say
 
 if TYPE_CHECKING:
     from gapless.cli.options import Job
@@ -68,6 +69,7 @@ def _formats(command: Callable[..., Any]) -> Callable[..., Any]:
     metavar="FILE",
     help="GeoJSON of lines and polygons, drawn faintly beneath the track of report.html.",
 )
+@force_option
 def fuse(
     out: Path,
     rate: float,
@@ -76,24 +78,31 @@ def fuse(
     vehicle: bool,
     no_report: bool,
     background: Path | None,
+    force: bool,
     **rest: Any,
 ) -> None:
     """Fuse a RECORDING into a trajectory with honest uncertainties.
 
     RECORDING is a folder with imu and gnss logs, or the two text files of a
     KF-GINS log. DIR receives solution.parquet, summary.json and report.html;
-    files of these names are replaced, once all the new ones are complete, and
-    those of an earlier run that this one does not write are removed.
+    those of an earlier run are replaced, once all the new ones are complete, or
+    removed where this run does not write them. Files that gapless did not write
+    are in the way, but with --force.
     """
     from gapless.cli.output import check_folder, write_together
 
     chosen = [name for name in FORMATS if rest.pop(name)]
-    check_folder(out)
+    names = [f"solution.{name}" for name in ("parquet", *chosen)]
+    names += ["summary.json", *["report.html"] * (not no_report)]
+    check_folder(out, names, force)
+    if save_model is not None:
+        _check_model(save_model, [out / name for name in names], force)
     ground = _background(background, no_report)
     work = job(**rest)
     solution, scores = _navigate(work, rate, smooth)
+    files: dict[str, Callable[[Path], object]] = {}
     if save_model is not None:
-        _save_model(solution, save_model)
+        files[str(save_model.absolute())] = partial(_write_bytes, _model(solution, save_model))
     if vehicle:
         from gapless.runs.vehicle import vehicle_attitude
 
@@ -103,15 +112,11 @@ def fuse(
     from gapless.reports.terminal import summary_lines
 
     summary = summarise(solution, scores)
-    files = _solution_files(solution, chosen) | {"summary.json": partial(_write_json, summary)}
+    files |= _solution_files(solution, chosen) | {"summary.json": partial(_write_json, summary)}
     if not no_report:
         files["report.html"] = partial(_write_report, solution, work.recording, scores, ground)
-    stale = write_together(out, files, OWN)
-    told = [
-        *(f"wrote {out / name}" for name in files),
-        *(f"removed {out / name}, of an earlier run" for name in stale),
-    ]
-    click.echo("\n".join([*summary_lines(summary), "", *told]))
+    told = write_together(out, files, OWN)
+    say(*summary_lines(summary), "", *(f"wrote {out / name}" for name in files), *told)
 
 
 def _background(path: Path | None, no_report: bool) -> list[Feature]:
@@ -151,9 +156,18 @@ def _navigate(work: Job, rate: float, smooth: bool) -> tuple[Solution, Scores | 
     return solution, score(solution, work.recording)
 
 
-def _save_model(solution: Solution, path: Path) -> None:
+def _check_model(path: Path, others: Iterable[Path], force: bool) -> None:
+    """Refuse a place for a model that is taken by anything else."""
     from gapless.errors import ConfigError
-    from gapless.io.writers.atomic import atomic
+    from gapless.io.marks import check_ours, is_model
+
+    if path.resolve() in [other.resolve() for other in others]:
+        raise ConfigError(f"--save-model {path}: this run writes that file itself; give another name")
+    check_ours([path], force, is_model)
+
+
+def _model(solution: Solution, path: Path) -> bytes:
+    from gapless.errors import ConfigError
 
     if not solution.learned:
         raise ConfigError(
@@ -165,10 +179,11 @@ def _save_model(solution: Solution, path: Path) -> None:
     from gapless.learners.saved import dumps
 
     learned = solution.learned[0]
-    data = written(learned) if isinstance(learned, Memory) else dumps(learned)
-    with atomic(path) as temporary:
-        temporary.write_bytes(data)
-    click.echo(f"wrote {path}")
+    return written(learned) if isinstance(learned, Memory) else dumps(learned)
+
+
+def _write_bytes(content: bytes, path: Path) -> None:
+    path.write_bytes(content)
 
 
 def _solution_files(solution: Solution, chosen: Iterable[str]) -> dict[str, Callable[[Path], object]]:
@@ -184,6 +199,6 @@ def _write_json(summary: dict[str, Any], path: Path) -> None:
 def _write_report(
     solution: Solution, recording: Recording, scores: Scores | None, ground: list[Feature], path: Path
 ) -> None:
-    from gapless.reports.report import write_report
+    from gapless.reports.report import page
 
-    write_report(solution, recording, scores, path, ground)
+    path.write_text(page(solution, recording, scores, background=ground), "utf-8")

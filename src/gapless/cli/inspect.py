@@ -7,6 +7,7 @@ from typing import Any
 import click
 
 from gapless.cli.options import job, job_options
+from gapless.cli.screen import say
 
 
 @click.command(short_help="Show what is in a recording and what fusion decides.")
@@ -20,7 +21,7 @@ def inspect(**chosen: Any) -> None:
     from gapless.cli.progress import progress
 
     work = job(**chosen)
-    click.echo("\n".join([*describe(work.recording), *notes(work.recording), ""]))
+    say(*describe(work.recording), *notes(work.recording), "")
 
     from gapless.reports.summary import summarise
     from gapless.reports.terminal import summary_lines
@@ -29,4 +30,4 @@ def inspect(**chosen: Any) -> None:
     with progress("deciding", work.recording.duration) as tell:
         solution = fuse(work.recording, work.system, work.outages, 1.0, work.causal, tell)
     nothing: dict[str, Any] = {"states": {}, "innovations": {}, "scores": None, "outages": [], "notes": []}
-    click.echo("\n".join(summary_lines(summarise(solution) | nothing)[3:]))
+    say(*summary_lines(summarise(solution) | nothing)[3:])

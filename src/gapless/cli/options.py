@@ -17,6 +17,7 @@ Command = TypeVar("Command", bound=Callable[..., Any])
 
 FOLDER = click.Path(file_okay=False, path_type=Path)
 recording_argument = click.argument("recording", nargs=-1, required=True, type=click.Path(path_type=Path))
+force_option = click.option("--force", is_flag=True, help="Replace files that gapless did not write, too.")
 out_option = click.option("--out", type=FOLDER, required=True, metavar="DIR", help="Folder to write to.")
 _OUTAGE = (
     click.option(

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from pathlib import Path
-from shutil import get_terminal_size, rmtree
+from shutil import get_terminal_size
 from typing import TYPE_CHECKING
 
 import click
 
-from gapless.cli.options import out_option
+from gapless.cli import interrupt
+from gapless.cli.options import force_option, out_option
+from gapless.cli.screen import say
 
 if TYPE_CHECKING:
     from gapless.papers.experiment import Reproduction
@@ -27,27 +29,36 @@ if TYPE_CHECKING:
 )  # fmt: skip
 @click.option("--jobs", type=click.IntRange(min=1), default=2, show_default=True, help="Processes.")
 @out_option
+@force_option
 def reproduce(
-    paper: str, more: tuple[Path, ...], first: tuple[Path, ...], seeds: int | None, jobs: int, out: Path
+    paper: str,
+    more: tuple[Path, ...],
+    first: tuple[Path, ...],
+    seeds: int | None,
+    jobs: int,
+    out: Path,
+    force: bool,
 ) -> None:
     """Run the experiments of a PAPER again and put its tables beside ours.
 
     PAPER is wang2018, liu2019, georges2015, aslinezhad2020 or tan2015. DIR receives
     README.md and report.html, which say what differs and why, the tables, every
-    number (CSV, JSON) and the figures; files of these names are replaced. An
-    interrupted command goes on where it stopped: until its end, DIR/unfinished
-    keeps what is done.
+    number (CSV, JSON) and the figures; those of an earlier run are replaced. Files
+    that gapless did not write are in the way, but with --force. An interrupted
+    command goes on where it stopped: until its end, DIR/unfinished keeps what is
+    done.
     """
     from gapless.cli.output import check_folder, write_together
+    from gapless.papers.folder import FILES, figures_in
 
-    check_folder(out)
+    check_folder(out, (*FILES, *figures_in(out)), force)
 
     from gapless.cli.progress import progress
     from gapless.laboratory.render import as_text
     from gapless.laboratory.study import stored
     from gapless.papers.experiment import reproduce as run
-    from gapless.papers.folder import FILES, writers
-    from gapless.papers.kept import FOLDER
+    from gapless.papers.folder import writers
+    from gapless.papers.kept import FOLDER, forget
     from gapless.papers.library import paper as known
     from gapless.papers.page import summary
     from gapless.papers.tables import tables
@@ -56,7 +67,7 @@ def reproduce(
     _look(first + more)
     kept = out / FOLDER
     try:
-        with progress("running", 100.0) as tell:
+        with progress("running", 100.0) as tell, interrupt.plainly():
             done = run(found, seeds, sources, processes=jobs, progress=tell, kept=kept)
     except KeyboardInterrupt:
         if not kept.is_dir():
@@ -65,21 +76,17 @@ def reproduce(
     drawn = _drawn(done)
     arguments = {"paper": paper, "recordings": [str(p) for p in (*first, *more)], "seeds": seeds}
     files = writers(done, arguments, drawn)
-    stale = [f"figures/{p.name}" for p in (out / "figures").glob("*.png")]
-    write_together(out, files, own=(*FILES, *stale))
-    rmtree(kept, ignore_errors=True)
-    click.echo(as_text(tables(done), get_terminal_size((140, 24)).columns))
-    click.echo(summary(done))
-    click.echo("\n".join(f"wrote {out / name}" for name in files))
+    stale = write_together(out, files, own=(*FILES, *figures_in(out)))
+    forget(kept)
+    say(*as_text(tables(done), get_terminal_size((140, 24)).columns).split("\n"))
+    say(*summary(done).split("\n"), *(f"wrote {out / name}" for name in files), *stale)
 
 
 def _interrupted(kept: Path) -> None:
     """Say what is left, and that it is no debris."""
-    from gapless.cli import INTERRUPTED
-
     told = f"what is done is kept in {kept}; the same command goes on from there"
-    click.echo(f"\ngapless: interrupted; {told}", err=True)
-    click.get_current_context().exit(INTERRUPTED)
+    say("", f"gapless: interrupted; {told}", err=True)
+    click.get_current_context().exit(interrupt.INTERRUPTED)
 
 
 def _look(paths: tuple[Path, ...]) -> None:
@@ -99,5 +106,5 @@ def _drawn(done: Reproduction) -> dict[str, bytes]:
     try:
         return figures(done)
     except MissingExtraError as error:
-        click.echo(f"no figures: {error}", err=True)
+        say(f"no figures: {error}", err=True)
         return {}

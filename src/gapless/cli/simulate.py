@@ -6,7 +6,8 @@ from pathlib import Path
 
 import click
 
-from gapless.cli.options import out_option, outage_options
+from gapless.cli.options import force_option, out_option, outage_options
+from gapless.cli.screen import say
 
 
 @click.command(short_help="Simulate a drive, as a recording with its truth.")
@@ -53,6 +54,7 @@ from gapless.cli.options import out_option, outage_options
 )
 @outage_options
 @out_option
+@force_option
 def simulate(
     profile: str,
     grade: str,
@@ -65,19 +67,23 @@ def simulate(
     outage: tuple[str, ...],
     outages: tuple[str, ...],
     out: Path,
+    force: bool,
 ) -> None:
     """Simulate a drive: IMU, GNSS and the truth, as a recording folder.
 
-    With --outage or --outages the receiver itself is silent, as in a tunnel.
+    With --outage or --outages the receiver itself is silent, as in a tunnel. A
+    recording that DIR holds already is kept, but for one of the same options.
     """
-    from gapless.cli.output import check_folder
+    from gapless.cli.output import check_recording, digest, write_together
 
-    check_folder(out)
+    chosen = {k: v for k, v in click.get_current_context().params.items() if k not in ("out", "force")}
+    origin = digest("simulate", sorted(chosen.items()))
+    check_recording(out, origin, force)
 
     from dataclasses import replace
 
     from gapless.cli.describe import describe
-    from gapless.io import write_recording
+    from gapless.io.writers.recording import check_free, recording_files
     from gapless.scenarios import plan, withhold
     from gapless.simulate import CAR, Receiver, Vehicle, WheelSensor
     from gapless.simulate import simulate as drive
@@ -95,5 +101,7 @@ def simulate(
     )
     silent = plan([*outage, *outages], made)
     made = replace(made, gnss=withhold(made.gnss, silent, made.start))
-    write_recording(made, out)
-    click.echo("\n".join([*describe(made), "", f"wrote {out}"]))
+    files = recording_files(made, origin)
+    check_free(out, files)
+    write_together(out, files)
+    say(*describe(made), "", f"wrote {out}")

@@ -9,6 +9,10 @@ from typing import TYPE_CHECKING, Final
 
 import click
 
+from gapless.cli import interrupt
+from gapless.cli.options import force_option
+from gapless.cli.screen import say
+
 if TYPE_CHECKING:
     from gapless.sweeps.conduct import Tally, Tell
     from gapless.sweeps.study import Plan
@@ -32,7 +36,16 @@ SHOWN: Final = 20
 @click.option("--out", metavar="DIR", help="Folder of the results, or a URL such as s3://bucket/results.")
 @click.option("--retry", is_flag=True, help="Do failed runs again; refused ones stay as they are.")
 @click.option("--dry-run", is_flag=True, help="Say what the runs are, and do none.")
-def sweep(study: Path, executor: str, jobs: int | None, out: str | None, retry: bool, dry_run: bool) -> None:
+@force_option
+def sweep(
+    study: Path,
+    executor: str,
+    jobs: int | None,
+    out: str | None,
+    retry: bool,
+    dry_run: bool,
+    force: bool,
+) -> None:
     """Do all runs of a STUDY, a TOML file that docs/sweeps.md explains.
 
     DIR receives one Parquet row a run, with its outages, in study=NAME. Rows that
@@ -43,7 +56,7 @@ def sweep(study: Path, executor: str, jobs: int | None, out: str | None, retry: 
 
     plan = plan_study(study)
     if dry_run:
-        click.echo("\n".join(_plan_lines(plan)))
+        say(*_plan_lines(plan))
         return
     if out is None:
         raise ConfigError("--out is missing; give a folder for the results, or --dry-run")
@@ -55,19 +68,18 @@ def sweep(study: Path, executor: str, jobs: int | None, out: str | None, retry: 
     gc.enable()  # `main` does without, for runs that end before it pays
     told: list[Tally] = []
     try:
-        tally = conduct(plan, out, executor, jobs, retry, _teller(told))
+        with interrupt.plainly():
+            tally = conduct(plan, out, executor, jobs, retry, _teller(told), force)
     except KeyboardInterrupt:
         _interrupted(told, len(plan), out)
-    click.echo("\n".join(_result_lines(plan, tally, out)).replace("\u00a0", " "))
+    say(*(line.replace("\u00a0", " ") for line in _result_lines(plan, tally, out)))
 
 
 def _interrupted(told: list[Tally], total: int, out: str) -> None:
-    from gapless.cli import INTERRUPTED
-
     stored = told[-1].there + told[-1].fresh if told else 0
     known = f"{stored} of {total} runs are stored in {out}" if told else f"what was done is stored in {out}"
-    click.echo(f"\ngapless: interrupted; {known}; the same command goes on from there", err=True)
-    click.get_current_context().exit(INTERRUPTED)
+    say("", f"gapless: interrupted; {known}; the same command goes on from there", err=True)
+    click.get_current_context().exit(interrupt.INTERRUPTED)
 
 
 def _teller(told: list[Tally]) -> Tell:
@@ -81,7 +93,11 @@ def _teller(told: list[Tally]) -> Tell:
         told[:] = [tally]
         if time.monotonic() - shown[0] > pause:
             shown[0] = time.monotonic()
-            click.echo(start + _progress(tally).replace("\u00a0", " "), err=True, nl=not watched)
+            line = _progress(tally).replace("\u00a0", " ")
+            if watched:
+                click.echo(start + line, err=True, nl=False)
+            else:
+                say(line, err=True)
 
     return tell
 
@@ -130,7 +146,8 @@ def _result_lines(plan: Plan, tally: Tally, out: str) -> Iterator[str]:
     names = [" ".join(filter(None, (line.system, line.override))) for line in lines]
     width = max(map(len, [*names, "system"]))
     heads = ("runs", "refused", "failed", "outages", "median", "P95", "worst", "in 95 %")
-    yield f"\n  {'system':<{width}}" + _cells(*heads)
+    yield ""
+    yield f"  {'system':<{width}}" + _cells(*heads)
     for name, line in zip(names, lines, strict=True):
         figures = [*(number(x, "m") for x in (line.median, line.p95, line.worst)), percent(line.coverage_95)]
         counts = map(str, (line.runs, line.refused, line.failed, line.outages))

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 
+from gapless.io.edges import FAR, FAR_IMU, of_the_trip, without_strays
 from gapless.io.inertial_log import imu_from_increments, imu_from_rates
 from gapless.io.log import Log
 from gapless.io.orientation import check_orientation
 from gapless.io.other_logs import odometer_from_log, reference_from_log
 from gapless.io.plausible import check_odometer
 from gapless.io.satellite_log import gnss_from_log
-from gapless.trip.recording import Array, Recording
+from gapless.trip.recording import Array, Imu, Note, Recording
 
 
 def assemble(
@@ -53,16 +54,21 @@ def assemble(
     RecordingError
         If a log cannot be used, or IMU and GNSS do not overlap in time.
     """
-    samples, notes = imu_from_increments(imu) if "dtheta_x" in imu else imu_from_rates(imu, axes)
+    notes = list[Note]()
+    imu = without_strays(imu, FAR_IMU, notes)
+    samples, more = imu_from_increments(imu) if "dtheta_x" in imu else imu_from_rates(imu, axes)
+    notes += more
+    gnss = _tidied(gnss, samples, notes)
     fixes, more = gnss_from_log(gnss)
     notes += more
     wheel = truth = None
     if odometer is not None:
+        odometer = _tidied(odometer, samples, notes)
         wheel, more = odometer_from_log(odometer)
         check_odometer(odometer, wheel, fixes)
         notes += more
     if reference is not None:
-        truth, more = reference_from_log(reference)
+        truth, more = reference_from_log(_tidied(reference, samples, notes))
         notes += more
         if (
             reference_clock is None
@@ -83,6 +89,11 @@ def assemble(
         grade=grade,
         notes=tuple(notes),
     )
+
+
+def _tidied(log: Log, imu: Imu, notes: list[Note]) -> Log:
+    """Another sensor's log without the stamps that make a drive last for decades."""
+    return of_the_trip(without_strays(log, FAR, notes), imu.time, notes)
 
 
 def _check_overlap(imu: Log, gnss: Log, samples: Array, fixes: Array) -> None:

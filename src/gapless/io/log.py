@@ -14,6 +14,21 @@ from gapless.errors import RecordingError
 from gapless.trip.recording import Array, Note
 
 
+def readable(name: str) -> str:
+    """A file's name as text: bytes that are not UTF-8 are shown as unknown characters.
+
+    Parameters
+    ----------
+    name : str
+        As the system gives it.
+
+    Returns
+    -------
+    str
+    """
+    return name.encode("utf-8", "surrogateescape").decode("utf-8", "replace")
+
+
 @dataclass(frozen=True, eq=False)
 class Log:
     """Columns of one log, in the units of its format, before anything is mended.
@@ -167,7 +182,7 @@ class Log:
         Note
             Under the file's name, without its folder.
         """
-        return Note(PurePath(self.where).name, what, count)
+        return Note(readable(PurePath(self.where).name), what, count)
 
     def refuse(self, what: str, cure: str, k: int | None = None) -> NoReturn:
         """Raise the one line that a user reads: where, what, and what next.

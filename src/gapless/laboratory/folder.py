@@ -7,10 +7,11 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from gapless.io.marks import MARK, marked
 from gapless.laboratory.bench import Results
 from gapless.laboratory.render import as_latex, as_markdown, as_text
 from gapless.laboratory.rows import Block, Row
@@ -22,6 +23,11 @@ if TYPE_CHECKING:
 
 Writers = dict[str, Callable[[Path], object]]
 """By file name: writes the file at a path."""
+FILES: Final = (
+    *("outages.parquet", "ages.parquet", "tracks.parquet", "runs.parquet", "leaderboard.parquet"),
+    *("pairs.parquet", "tables.txt", "tables.md", "tables.tex", "tables.json", "bench.json"),
+)
+"""Their names."""
 
 
 def writers(results: Results, arguments: Mapping[str, Any]) -> Writers:
@@ -46,10 +52,12 @@ def writers(results: Results, arguments: Mapping[str, Any]) -> Writers:
         "runs.parquet": partial(_parquet_rows, results.runs),
         "leaderboard.parquet": partial(_parquet_rows, results.leaderboard),
         "pairs.parquet": partial(_parquet_rows, results.pairs),
-        "tables.txt": partial(_text, as_text(found)),
-        "tables.md": partial(_text, as_markdown(found)),
-        "tables.tex": partial(_text, as_latex(found)),
-        "tables.json": partial(_json, {"leaderboard": results.leaderboard, "pairs": results.pairs}),
+        "tables.txt": partial(_text, f"{as_text(found)}\n{MARK}\n"),
+        "tables.md": partial(_text, f"<!-- {MARK} -->\n\n{as_markdown(found)}"),
+        "tables.tex": partial(_text, f"% {MARK}\n{as_latex(found)}"),
+        "tables.json": partial(
+            _json, {"gapless": __version__, "leaderboard": results.leaderboard, "pairs": results.pairs}
+        ),
         "bench.json": partial(_json, about(results, arguments)),
     }
 
@@ -124,4 +132,4 @@ def _parquet_blocks(blocks: Sequence[Block], path: Path) -> None:
 def _write(table: pa.Table, path: Path) -> None:
     import pyarrow.parquet as pq
 
-    pq.write_table(table, path, compression="zstd")
+    pq.write_table(marked(table), path, compression="zstd")

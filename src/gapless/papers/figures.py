@@ -11,7 +11,7 @@ from typing import Any, Final
 from gapless.papers.experiment import Reproduction, Results
 from gapless.papers.jobs import Curve, Track
 from gapless.papers.studies import Convergence, Fitness, Signals
-from gapless.reports.bench.figures import figure_class
+from gapless.reports.bench.figures import MADE_BY, figure_class
 
 _COLOURS: Final = ("#4b545c", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#0072b2", "#a6761d")
 _DASHES: Final = ("-", "--", ":", "-.")
@@ -47,6 +47,20 @@ def caption(name: str) -> str:
     return f"{rest.replace('-', ' ')}: {_CAPTIONS[kind]}" if rest else _CAPTIONS[kind]
 
 
+def is_named(name: str) -> bool:
+    """Whether a figure of a reproduction may have this name.
+
+    Parameters
+    ----------
+    name : str
+
+    Returns
+    -------
+    bool
+    """
+    return name.partition("-")[0] in _CAPTIONS
+
+
 def figures(done: Reproduction) -> dict[str, bytes]:
     """All figures of a reproduction.
 
@@ -70,7 +84,7 @@ def figures(done: Reproduction) -> dict[str, bytes]:
         figure = make(figsize=_SIZE, layout="constrained")
         draw(figure)
         held = BytesIO()
-        figure.savefig(held, format="png", dpi=_DPI)
+        figure.savefig(held, format="png", dpi=_DPI, metadata=MADE_BY["png"])
         found[re.sub("[^a-zA-Z0-9._]+", "-", name).strip("-")] = held.getvalue()
     return found
 

@@ -9,9 +9,11 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+from gapless.io.marks import MARK
 from gapless.laboratory.render import as_markdown, as_text
 from gapless.papers.compare import mean, rankings, ratios
 from gapless.papers.experiment import Reproduction, Results
+from gapless.papers.figures import is_named
 from gapless.papers.page import page, readme
 from gapless.papers.tables import tables
 from gapless.reports.numbers import plain
@@ -21,6 +23,21 @@ Writers = dict[str, Callable[[Path], object]]
 """By file name: writes the file at a path."""
 FILES = ("README.md", "report.html", "tables.txt", "samples.csv", "results.csv", "results.json")
 """Names of all files but the figures."""
+
+
+def figures_in(folder: Path) -> list[str]:
+    """Figures that are there, or could be taken for ours.
+
+    Parameters
+    ----------
+    folder : Path
+        Of a reproduction.
+
+    Returns
+    -------
+    list of str
+    """
+    return [f"figures/{p.name}" for p in sorted((folder / "figures").glob("*.png")) if is_named(p.stem)]
 
 
 def writers(done: Reproduction, arguments: Mapping[str, Any], figures: Mapping[str, bytes]) -> Writers:
@@ -41,9 +58,9 @@ def writers(done: Reproduction, arguments: Mapping[str, Any], figures: Mapping[s
     found = tables(done)
     rows = [row for results in done.results for row in means(results)]
     texts = {
-        "README.md": readme(done, as_markdown(found), tuple(figures)),
+        "README.md": f"<!-- {MARK} -->\n\n{readme(done, as_markdown(found), tuple(figures))}",
         "report.html": page(done, found, figures),
-        "tables.txt": as_text(found),
+        "tables.txt": f"{as_text(found)}\n{MARK}\n",
         "results.json": json.dumps(plain(about(done, arguments, rows)), indent=1, ensure_ascii=False) + "\n",
     }
     drawn: Writers = {f"figures/{name}.png": partial(_bytes, image) for name, image in figures.items()}

@@ -7,7 +7,9 @@ numbers in msgpack, so that what is read back has the bits of what was computed.
 from __future__ import annotations
 
 import hashlib
+import re
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
@@ -50,6 +52,20 @@ def once(folder: Path, work: Callable[[Job], Outcome], job: Job) -> Outcome:
     with atomic(path) as made:
         made.write_bytes(msgspec.msgpack.encode(outcome, enc_hook=_encoded))
     return outcome
+
+
+def forget(folder: Path) -> None:
+    """Throw away what was kept, and the folder if nothing else is in it.
+
+    Parameters
+    ----------
+    folder : Path
+    """
+    for path in folder.glob("*.msgpack"):
+        if re.fullmatch("[0-9a-f]{24}", path.stem):
+            path.unlink(missing_ok=True)
+    with suppress(OSError):  # not there, or somebody else's files are in it
+        folder.rmdir()
 
 
 def _key(job: Job) -> str:

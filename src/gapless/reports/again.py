@@ -37,7 +37,7 @@ def is_run(folder: Path) -> bool:
     return (folder / "solution.parquet").is_file() and (folder / "summary.json").is_file()
 
 
-def write_again(folder: Path, background: Sequence[Feature] = ()) -> Path:
+def write_again(folder: Path, background: Sequence[Feature] = (), force: bool = False) -> Path:
     """Write `report.html` from `solution.parquet` and `summary.json`.
 
     Parameters
@@ -45,6 +45,8 @@ def write_again(folder: Path, background: Sequence[Feature] = ()) -> Path:
     folder : Path
         Where `gapless fuse` wrote its files.
     background : sequence of Feature
+    force : bool
+        Replace the page that is there.
 
     Returns
     -------
@@ -57,10 +59,10 @@ def write_again(folder: Path, background: Sequence[Feature] = ()) -> Path:
         If a page is there, which the run itself wrote with more in it; or if a file is not the run's.
     """
     path = folder / "report.html"
-    if path.exists():
+    if path.exists() and not force:
         raise ConfigError(
             f"{path}: is there, and a page made of solution.parquet and summary.json would lack {LEFT_OUT}; "
-            "remove it first, or run gapless fuse again"
+            "remove it first, replace it with --force, or run gapless fuse again"
         )
     try:
         summary = json.loads((folder / "summary.json").read_text("utf-8"))

@@ -7,6 +7,8 @@ from pathlib import Path
 from typing import Any
 
 from gapless.evaluation import Scores
+from gapless.io.marks import check_ours, is_page
+from gapless.io.writers.atomic import atomic
 from gapless.reports import rehearsals, tables, wheels
 from gapless.reports.background import Feature
 from gapless.reports.numbers import distance, duration, known
@@ -33,6 +35,7 @@ def write_report(
     scores: Scores | None,
     path: str | Path,
     background: Sequence[Feature] = (),
+    force: bool = False,
 ) -> None:
     """Write the report of a run as one HTML file that needs no network.
 
@@ -45,11 +48,22 @@ def write_report(
     scores : Scores, optional
         From `gapless.evaluation.score`.
     path : str or Path
-        Where to; written in one go.
+        Where to. A page of ours that is there is replaced, once the new one is
+        complete.
     background : sequence of Feature
         From `gapless.reports.background.read_background`, drawn beneath the track.
+    force : bool
+        Replace what is there, whoever wrote it.
+
+    Raises
+    ------
+    ConfigError
+        If a file is there that gapless did not write.
     """
-    Path(path).write_text(page(solution, recording, scores, background=background), encoding="utf-8")
+    check_ours([path := Path(path)], force, is_page, "force=True")
+    text = page(solution, recording, scores, background=background)
+    with atomic(path) as temporary:
+        temporary.write_text(text, encoding="utf-8")
 
 
 def page(

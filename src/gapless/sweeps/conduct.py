@@ -72,6 +72,7 @@ def sweep(
     jobs: int | None = None,
     retry: bool = False,
     tell: Tell | None = None,
+    force: bool = False,
 ) -> Tally:
     """Do the runs of a study that its store does not hold yet.
 
@@ -90,6 +91,8 @@ def sweep(
         Do failed runs again, instead of leaving their rows as they are.
     tell : callable, optional
         Told how far it is after each row.
+    force : bool
+        Let `retry` change parts that gapless did not write as they are.
 
     Returns
     -------
@@ -113,7 +116,7 @@ def sweep(
         raise ConfigError("an executor of your own has its own number of workers; leave jobs out")
     with opened(str(out), plan.name) as store:
         if retry:
-            store.forget_failed()
+            store.forget_failed(force)
         return _swept(plan, workers, store.keys(), store.add, tell)
 
 

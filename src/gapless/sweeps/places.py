@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import secrets
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -80,7 +81,8 @@ class Local(NamedTuple):
     def clean(self) -> None:
         """See `Place`."""
         for path in self.folder.glob(f".*{_TORN}"):
-            path.unlink(missing_ok=True)
+            if _is_torn(path.name):
+                path.unlink(missing_ok=True)
 
     @contextmanager
     def reserve(self) -> Iterator[None]:
@@ -101,7 +103,7 @@ class Local(NamedTuple):
             yield
             return
         self.folder.mkdir(parents=True, exist_ok=True)
-        with (self.folder / _LOCK).open("w") as file:
+        with (self.folder / _LOCK).open("a") as file:
             try:
                 fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
             except BlockingIOError:
@@ -164,7 +166,7 @@ class Remote(NamedTuple):
     def clean(self) -> None:
         """See `Place`."""
         for name in self._entries("file", hidden=True):
-            if name.endswith(_TORN):
+            if _is_torn(name):
                 self.remove(name)
 
     @contextmanager
@@ -186,6 +188,11 @@ class Remote(NamedTuple):
             raise
         except Exception as error:
             raise OSError(f"{self.folder}: {type(error).__name__}: {error}") from error
+
+
+def _is_torn(name: str) -> bool:
+    """Whether a name is that of a part, a report or the like that was being written."""
+    return re.fullmatch(rf"\..+\.[0-9a-f]{{8}}{re.escape(_TORN)}", name) is not None
 
 
 def place(path: str) -> Place:

@@ -21,6 +21,7 @@ import pyarrow.compute as pc
 import pyarrow.parquet as pq
 
 from gapless.errors import ConfigError
+from gapless.io.marks import PARQUET_KEY, marked
 from gapless.sweeps.execute import Row, outage_columns
 from gapless.sweeps.places import Place, place
 
@@ -56,13 +57,33 @@ class Store:
         """
         return {key for _, part in _parts(self._where, ["key"]) for key in part["key"].to_pylist()}
 
-    def forget_failed(self) -> None:
-        """Throw away the rows of runs that failed, so that they are done again."""
+    def forget_failed(self, force: bool = False) -> None:
+        """Throw away the rows of runs that failed, so that they are done again.
+
+        Parameters
+        ----------
+        force : bool
+            Of parts without our mark too.
+
+        Raises
+        ------
+        ConfigError
+            If such a part holds some; then nothing is changed.
+        """
+        failed = []
         for name, part in _parts(self._where):
             kept = part.filter(pc.field("outcome") != "failed")
+            if len(kept) == len(part):
+                continue
+            if not force and PARQUET_KEY not in (part.schema.metadata or {}):
+                raise ConfigError(
+                    f"{name}: gapless did not write it as it is; move it away, or change it with --force"
+                )
+            failed.append((name, kept))
+        for name, kept in failed:
             if not len(kept):
                 self._where.remove(name)
-            elif len(kept) < len(part):
+            else:
                 self._where.write(name, _packed(kept))
 
     def add(self, row: Row) -> None:
@@ -184,7 +205,7 @@ def _arrow(kind: Any) -> Any:
 
 def _packed(table: Any) -> bytes:
     buffer = io.BytesIO()
-    pq.write_table(table, buffer, compression="zstd")
+    pq.write_table(marked(table), buffer, compression="zstd")
     return buffer.getvalue()
 
 
@@ -207,6 +228,9 @@ def _parts(where: Place, columns: list[str] | None = None) -> Iterator[tuple[str
     for name in where.names():
         if name.startswith("part-"):
             try:
-                yield name, pq.read_table(io.BytesIO(where.read(name)), columns=columns)
+                part = pq.read_table(io.BytesIO(where.read(name)), columns=columns)
             except pa.ArrowInvalid as error:
                 raise ConfigError(f"{name}: damaged ({error}); remove it, its runs are done again") from None
+            if not {"key", *([] if columns else ["outcome"])} <= {*part.column_names}:
+                raise ConfigError(f"{name}: holds no runs of a sweep; move it away")
+            yield name, part

@@ -55,11 +55,19 @@ def steered(gnss: Gnss, half: float) -> Steered:
     time, v = gnss.time[heard], v[heard]
     if len(time) < 2:
         return Steered(np.zeros(0), *np.zeros((3, 0, 2)))
-    at = np.arange(time[0] + half, time[-1] - half, 1.0)
+    at = time[0] + half + _seconds(time - time[0] - half, 1.5 * half)
+    at = at[at < time[-1] - half]
     three = [np.column_stack([np.interp(at + s, time, c) for c in v.T]) for s in (-half, 0.0, half)]
     near = np.searchsorted(time, at + 1.5 * half) - np.searchsorted(time, at - 1.5 * half) >= 3
     drove = near & (np.min([np.hypot(*u.T) for u in three], axis=0) > STEERED_SPEED)
     return Steered(at[drove], *(u[drove] for u in three))
+
+
+def _seconds(time: Array, reach: float) -> Array:
+    """Whole seconds from zero on with a reading within reach: of a log's span, however long it is silent."""
+    around = np.arange(-np.ceil(reach), np.ceil(reach) + 1.0)
+    seconds = np.unique(np.floor(time)[:, None] + around)
+    return np.asarray(seconds[seconds >= 0.0])
 
 
 def rightward(a: Array, b: Array) -> Array:

@@ -69,7 +69,7 @@ def test_screen_is_narrow_and_says_where_the_files_are(run):
 
 def test_a_folder_that_is_there_keeps_what_is_not_ours(shell, drive, tmp_path):
     (tmp_path / "mine.txt").write_text("mine")
-    (tmp_path / "summary.json").write_text("old")
+    (tmp_path / "summary.json").write_text('{"gapless": "0.0.1"}')
     shell("fuse", drive, "--rate", 2, "--no-report", "--out", tmp_path)
     assert {p.name for p in tmp_path.iterdir()} == {"mine.txt", "summary.json", "solution.parquet"}
     assert json.loads((tmp_path / "summary.json").read_text("utf-8"))["name"]

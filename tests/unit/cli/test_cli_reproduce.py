@@ -29,10 +29,16 @@ def quick(monkeypatch):
 def test_a_folder_of_it_all(shell, quick, tmp_path):
     out = tmp_path / "out"
     (out / "figures").mkdir(parents=True)
-    (out / "figures" / "errors-of-an-earlier-run.png").write_bytes(b"old")
+    marked = b"\x89PNG\r\n\x1a\n....IHDR....tEXtSoftware\0gapless 0.0.1"
+    (out / "figures" / "errors-of-an-earlier-run.png").write_bytes(marked)
+    (out / "figures" / "mine.png").write_bytes(b"mine")
+    (out / "unfinished").mkdir()
+    (out / "unfinished" / "mine.txt").write_bytes(b"mine")
     said = shell("reproduce", "tan2015", "--seeds", 1, "--jobs", 1, "--out", out).output
-    assert {p.name for p in out.iterdir()} == FILES
+    assert {p.name for p in out.iterdir()} == FILES | {"unfinished"}
+    assert [p.name for p in (out / "unfinished").iterdir()] == ["mine.txt"]
     assert not (out / "figures" / "errors-of-an-earlier-run.png").exists()
+    assert (out / "figures" / "mine.png").exists()
     assert (out / "tables.txt").read_text("utf-8").splitlines()[0] in said
     assert "Section 5.2 and Table 3, test 1" in said
     assert "27.0" in said  # what the paper's INS drifts

@@ -118,7 +118,7 @@ def test_failed_rows_can_be_forgotten(tmp_path, results, url):
 
 def test_torn_files_are_cleaned_behind_a_url_too(tmp_path):
     where = place(f"file://{tmp_path}")
-    (tmp_path / ".part-1.parquet.12ab.part").write_bytes(b"PAR1")
+    (tmp_path / ".part-1.parquet.12ab34cd.part").write_bytes(b"PAR1")
     (tmp_path / "part-2.parquet").write_bytes(b"whole")
     where.clean()
     assert [p.name for p in tmp_path.iterdir()] == ["part-2.parquet"]

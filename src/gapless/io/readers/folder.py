@@ -14,6 +14,7 @@ from gapless.errors import RecordingError
 from gapless.io.assemble import assemble
 from gapless.io.axes import FRD, axes_matrix
 from gapless.io.inertial_log import IMU_COLUMNS
+from gapless.io.log import readable
 from gapless.io.other_logs import ODOMETER_COLUMNS, REFERENCE_COLUMNS
 from gapless.io.satellite_log import GNSS_COLUMNS
 from gapless.io.tables import load
@@ -88,7 +89,7 @@ class Folder:
             if sensor not in logs:
                 raise RecordingError(f"{folder}: no {sensor}.parquet or {sensor}.csv; add the {sensor} log")
         return assemble(
-            settings.get("name", folder.resolve().name),
+            settings.get("name", readable(folder.resolve().name)),
             logs["imu"],
             logs["gnss"],
             odometer=logs.get("odometer"),

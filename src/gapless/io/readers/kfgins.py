@@ -11,6 +11,7 @@ import numpy as np
 from gapless.errors import RecordingError
 from gapless.io.assemble import assemble
 from gapless.io.inertial_log import DTHETA, DVEL
+from gapless.io.log import readable
 from gapless.io.satellite_log import POSITION, SD_POSITION, SD_VELOCITY, VELOCITY
 from gapless.io.text import first_data_line, load_numbers, read_head
 from gapless.trip.recording import Array, Recording
@@ -64,7 +65,7 @@ class KfGins:
         RecordingError
         """
         imu, gnss = sorted(paths, key=_interval)
-        return assemble(imu.stem, load_numbers(imu, [IMU_LAYOUT]), load_numbers(gnss, GNSS_LAYOUTS))
+        return assemble(readable(imu.stem), load_numbers(imu, [IMU_LAYOUT]), load_numbers(gnss, GNSS_LAYOUTS))
 
 
 def _head(path: Path) -> Array:

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Final
 
 from gapless.errors import ConfigError
+from gapless.io.marks import check_ours
 from gapless.io.writers.csv import write_csv
 from gapless.io.writers.geojson import write_geojson
 from gapless.io.writers.gpx import write_gpx
@@ -43,23 +44,26 @@ WRITERS: Final[dict[str, Writer]] = {
 """By suffix."""
 
 
-def write(solution: Solution, path: str | os.PathLike[str]) -> None:
+def write(solution: Solution, path: str | os.PathLike[str], force: bool = False) -> None:
     """Write a solution in the format that the path's suffix names.
 
     Parameters
     ----------
     solution : Solution
     path : str or path
-        Its folder is made if it is not there; a file that is there is replaced, once the new one
-        is complete.
+        Its folder is made if it is not there; a file of ours that is there is replaced, once the
+        new one is complete.
+    force : bool
+        Replace what is there, whoever wrote it.
 
     Raises
     ------
     ConfigError
-        If no writer has that suffix.
+        If no writer has that suffix, or a file is there that gapless did not write.
     """
     path = Path(path)
     writer = WRITERS.get(path.suffix.lstrip(".").lower())
     if writer is None:
         raise ConfigError(f"{path}: no writer for it; name the file .{', .'.join(WRITERS)}")
+    check_ours([path], force, cure="force=True")
     writer.write(solution, path)

@@ -9,6 +9,7 @@ from typing import Any
 from gapless.io.writers.atomic import atomic
 from gapless.io.writers.table import runs, solution_columns
 from gapless.trip.solution import Solution
+from gapless.version import __version__
 
 
 def write_geojson(solution: Solution, path: Path) -> None:
@@ -23,7 +24,12 @@ def write_geojson(solution: Solution, path: Path) -> None:
     path : Path
     """
     features = [_feature(solution, source, rows) for source, rows in runs(solution)]
-    collection = {"type": "FeatureCollection", "name": solution.name, "features": features}
+    collection = {
+        "gapless": __version__,  # a foreign member, which RFC 7946 allows
+        "type": "FeatureCollection",
+        "name": solution.name,
+        "features": features,
+    }
     with atomic(path) as temporary:
         temporary.write_text(json.dumps(collection, allow_nan=False), "utf-8")
 

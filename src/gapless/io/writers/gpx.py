@@ -5,6 +5,7 @@ from __future__ import annotations
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
+from gapless.io.marks import MARK
 from gapless.io.writers.atomic import atomic
 from gapless.io.writers.kml import clean
 from gapless.io.writers.table import solution_columns
@@ -23,7 +24,7 @@ def write_gpx(solution: Solution, path: Path, epoch: datetime | None = None) -> 
     """
     columns = solution_columns(solution)
     parts = [
-        '<?xml version="1.0" encoding="UTF-8"?>\n<gpx version="1.1" creator="gapless" '
+        f'<?xml version="1.0" encoding="UTF-8"?>\n<gpx version="1.1" creator="{MARK}" '
         f'xmlns="http://www.topografix.com/GPX/1/1"><trk><name>{clean(solution.name)}</name><trkseg>\n'
     ]
     rows = zip(*(columns[name].tolist() for name in ("time", "lat", "lon", "height")), strict=True)

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Final
 from xml.sax.saxutils import escape
 
+from gapless.io.marks import MARK
 from gapless.io.writers.atomic import atomic
 from gapless.io.writers.table import runs, solution_columns
 from gapless.trip.solution import Solution
@@ -37,7 +38,8 @@ def write_kml(solution: Solution, path: Path) -> None:
         for source, colour in COLOURS.items()
     )
     parts = [
-        '<?xml version="1.0" encoding="UTF-8"?>\n<kml xmlns="http://www.opengis.net/kml/2.2"><Document>\n'
+        f'<?xml version="1.0" encoding="UTF-8"?>\n<!-- {MARK} -->\n'
+        '<kml xmlns="http://www.opengis.net/kml/2.2"><Document>\n'
     ]
     parts.append(f"<name>{clean(solution.name)}</name>\n{styles}")
     for source, rows in runs(solution):

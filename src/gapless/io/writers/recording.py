@@ -4,21 +4,26 @@ from __future__ import annotations
 
 import json
 import os
+from collections.abc import Callable, Iterable
+from functools import partial
 from pathlib import Path
+from typing import Any, Final
 
 from gapless.errors import RecordingError
 from gapless.io.axes import FRD
 from gapless.io.inertial_log import ACCEL, GYRO
+from gapless.io.marks import check_ours, in_toml, marked
 from gapless.io.satellite_log import POSITION, SD_POSITION, SD_VELOCITY, VELOCITY
-from gapless.io.writers.atomic import atomic
+from gapless.io.writers.atomic import together
 from gapless.io.writers.table import arrow_table, trajectory_columns
 from gapless.trip.recording import Array, Recording
 from gapless.units import DEG
 
-_FILES = ("imu", "gnss", "odometer", "reference")
+SENSORS: Final = ("imu", "gnss", "odometer", "reference")
+SETTINGS: Final = "recording.toml"
 
 
-def write_recording(recording: Recording, folder: str | os.PathLike[str]) -> None:
+def write_recording(recording: Recording, folder: str | os.PathLike[str], force: bool = False) -> None:
     """Write Parquet files and `recording.toml`; reading them gives the recording back.
 
     Increments are stored as rates beside their interval `dt`, so they come back to one rounding
@@ -29,34 +34,78 @@ def write_recording(recording: Recording, folder: str | os.PathLike[str]) -> Non
     ----------
     recording : Recording
     folder : str or path
-        Made if it is not there; its files of the same names are replaced.
+        Made if it is not there; files of ours under the same names are replaced, all together.
+    force : bool
+        Replace them whoever wrote them, or edited `recording.toml` since.
 
     Raises
     ------
+    ConfigError
+        If one of them is not ours.
     RecordingError
         If the folder holds another sensor's file that would then belong to this recording.
     """
-    import pyarrow.parquet as pq
-
     folder = Path(folder)
+    files = recording_files(recording)
+    check_free(folder, files)
+    check_ours((folder / name for name in files), force, cure="force=True")
+    with together(folder / name for name in files) as lent:
+        for write, temporary in zip(files.values(), lent, strict=True):
+            write(temporary)
+
+
+def recording_files(recording: Recording, origin: str = "") -> dict[str, Callable[[Path], object]]:
+    """What has to be written of a recording.
+
+    Parameters
+    ----------
+    recording : Recording
+    origin : str
+        What it was made of, as hexadecimal digits, for the mark of `recording.toml`.
+
+    Returns
+    -------
+    dict of str to callable
+        By file name; each writes its file at a path.
+    """
     tables = {"imu": _imu(recording), "gnss": _gnss(recording)}
     if recording.odometer is not None:
         tables["odometer"] = {"time": recording.odometer.time, "speed": recording.odometer.speed}
     if recording.reference is not None:
         tables["reference"] = trajectory_columns(recording.reference)
-    _check_free(folder, tables)
-    for sensor, columns in tables.items():
-        with atomic(folder / f"{sensor}.parquet") as temporary:
-            pq.write_table(arrow_table(columns), temporary, compression="zstd", use_dictionary=False)
-    with atomic(folder / "recording.toml") as temporary:
-        temporary.write_text(_settings(recording), "utf-8")
+    files: dict[str, Callable[[Path], object]] = {
+        f"{sensor}.parquet": partial(_write_table, columns) for sensor, columns in tables.items()
+    }
+    return {**files, SETTINGS: partial(_write_text, in_toml(_settings(recording), origin))}
 
 
-def _check_free(folder: Path, tables: dict[str, dict[str, Array]]) -> None:
-    for sensor in _FILES:
+def _write_table(columns: dict[str, Any], path: Path) -> None:
+    import pyarrow.parquet as pq
+
+    pq.write_table(marked(arrow_table(columns)), path, compression="zstd", use_dictionary=False)
+
+
+def _write_text(text: str, path: Path) -> None:
+    path.write_bytes(text.encode())  # the mark counts bytes: no other line ends on Windows
+
+
+def check_free(folder: Path, files: Iterable[str]) -> None:
+    """Refuse a folder with the log of a sensor that the new recording has not, or has elsewhere.
+
+    Parameters
+    ----------
+    folder : Path
+    files : iterable of str
+        Names that will be written.
+
+    Raises
+    ------
+    RecordingError
+    """
+    for sensor in SENSORS:
         for suffix in (".parquet", ".csv"):
             path = folder / f"{sensor}{suffix}"
-            if path.exists() and not (suffix == ".parquet" and sensor in tables):
+            if path.exists() and path.name not in files:
                 raise RecordingError(
                     f"{path}: in the way, it would become part of the new recording; "
                     "remove it or choose another folder"

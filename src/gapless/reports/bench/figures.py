@@ -11,6 +11,7 @@ from typing import Any, Final
 import numpy as np
 
 from gapless.errors import MissingExtraError
+from gapless.io.marks import MARK, check_ours
 from gapless.io.writers.atomic import atomic
 from gapless.reports.background import east_north
 from gapless.reports.bench.folder import POOLED, Bench, groups, pools_of, read_bench
@@ -24,9 +25,30 @@ _ONE_COLUMN: Final = (3.5, 2.6)
 """Width and height [in] of a column of the usual journals."""
 _DPI = 300
 _AGES = 120
+MADE_BY: Final = {"png": {"Software": MARK}, "pdf": {"Creator": MARK}}
+"""Attributes by format: the mark of ours."""
 
 
-def write_figures(folder: Path, suffix: str) -> list[Path]:
+def check_figures(folder: Path, suffix: str, force: bool) -> None:
+    """Refuse to draw over figures that gapless did not draw.
+
+    Parameters
+    ----------
+    folder : Path
+        Where `gapless bench` wrote its results.
+    suffix : str
+    force : bool
+        Let them be replaced.
+
+    Raises
+    ------
+    ConfigError
+        If there is one; or a file is missing or is not what a bench writes.
+    """
+    check_ours((_path(folder, name, suffix) for name, _ in _plans(read_bench(folder))), force)
+
+
+def write_figures(folder: Path, suffix: str, force: bool = False) -> list[Path]:
     """Write tracks, leaderboards and errors against age into `figures` of a bench folder.
 
     Parameters
@@ -35,6 +57,8 @@ def write_figures(folder: Path, suffix: str) -> list[Path]:
         Where `gapless bench` wrote its results.
     suffix : str
         "png" or "pdf".
+    force : bool
+        Replace figures that gapless did not draw.
 
     Returns
     -------
@@ -46,21 +70,26 @@ def write_figures(folder: Path, suffix: str) -> list[Path]:
     MissingExtraError
         If matplotlib is not installed.
     ConfigError
-        If a file is missing or is not what a bench writes.
+        If a file is missing or is not what a bench writes, or a figure there is not ours.
     """
     make = figure_class()
     written = []
+    check_figures(folder, suffix, force)
     for name, draw in _plans(read_bench(folder)):
         figure = make(figsize=_ONE_COLUMN, layout="constrained")
         axes = figure.add_subplot()
         axes.spines[["top", "right"]].set_visible(False)
         axes.tick_params(labelsize=8)
         draw(axes)
-        path = folder / "figures" / f"{re.sub('[^a-zA-Z0-9._-]+', '-', name)}.{suffix}"
+        path = _path(folder, name, suffix)
         with atomic(path) as temporary:
-            figure.savefig(temporary, format=suffix, dpi=_DPI)
+            figure.savefig(temporary, format=suffix, dpi=_DPI, metadata=MADE_BY[suffix])
         written.append(path)
     return written
+
+
+def _path(folder: Path, name: str, suffix: str) -> Path:
+    return folder / "figures" / f"{re.sub('[^a-zA-Z0-9._-]+', '-', name)}.{suffix}"
 
 
 def figure_class() -> Callable[..., Any]:

@@ -7,6 +7,7 @@ from html import escape
 from pathlib import Path
 from typing import Any
 
+from gapless.io.marks import check_ours
 from gapless.io.writers.atomic import atomic
 from gapless.reports.background import Feature
 from gapless.reports.bench import boards
@@ -21,7 +22,7 @@ _KINDS = 5
 _SCRIPTS = ("state", "dots", "leaderboard", "pairs", "ages", "track", "cards", "details", "main")
 
 
-def write_bench_report(folder: Path, background: Sequence[Feature] = ()) -> Path:
+def write_bench_report(folder: Path, background: Sequence[Feature] = (), force: bool = False) -> Path:
     """Write `report.html` into a bench folder.
 
     Parameters
@@ -30,6 +31,8 @@ def write_bench_report(folder: Path, background: Sequence[Feature] = ()) -> Path
         Where `gapless bench` wrote its results.
     background : sequence of Feature
         From `gapless.reports.background.read_background`, drawn beneath the tracks.
+    force : bool
+        Replace a page that gapless did not write.
 
     Returns
     -------
@@ -39,9 +42,10 @@ def write_bench_report(folder: Path, background: Sequence[Feature] = ()) -> Path
     Raises
     ------
     ConfigError
-        If a file is missing or is not what a bench writes.
+        If a file is missing or is not what a bench writes, or the page there is not ours.
     """
     path = Path(folder) / "report.html"
+    check_ours([path], force)
     text = bench_page(read_bench(Path(folder)), background)
     with atomic(path) as temporary:
         temporary.write_text(text, encoding="utf-8")
