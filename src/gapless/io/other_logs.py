@@ -8,7 +8,8 @@ import numpy as np
 
 from gapless.attitude import wrap
 from gapless.io.log import Log
-from gapless.io.satellite_log import POSITION, VELOCITY, check_positions, in_order
+from gapless.io.order import in_order, one_an_epoch
+from gapless.io.satellite_log import POSITION, VELOCITY, check_positions
 from gapless.trip.recording import Note, Odometer, Trajectory
 from gapless.units import DEG
 
@@ -88,4 +89,4 @@ def _known(log: Log, keep: np.ndarray[tuple[int, ...], np.dtype[np.bool_]]) -> t
     if bad:
         notes.append(log.note("rows without a usable value dropped", bad))
         log = log.take(keep)
-    return in_order(log, notes), notes
+    return one_an_epoch(in_order(log, notes), notes), notes

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gapless.io.log import Log
+from gapless.io.order import in_order, one_an_epoch
 from gapless.io.plausible import check_velocity
 from gapless.trip.recording import Array, Gnss, Note
 from gapless.units import DEG
@@ -35,14 +36,13 @@ FLOOR_SD_VELOCITY: Final = 0.02
 _ABSURD_SD: Final = 1000.0
 """A standard deviation [m or m/s] that means "unknown": 9999 and the like."""
 _SPARE: Final = 0.1
-"""Share of rows out of order or of range beyond which a log is refused."""
+"""Share of rows out of range beyond which a log is refused."""
 
 
 def gnss_from_log(log: Log) -> tuple[Gnss, list[Note]]:
     """Fixes of a log, stamps as logged.
 
-    A fix needs an epoch later than all before it. One row is looked ahead: a stamp later than
-    the one after it, which itself follows the one before, is the one that is dropped.
+    Rows are put in order by `in_order`; of several with one stamp the first is kept.
 
     Parameters
     ----------
@@ -64,7 +64,8 @@ def gnss_from_log(log: Log) -> tuple[Gnss, list[Note]]:
     log.require(("time", *POSITION))
     log.together(VELOCITY)
     notes: list[Note] = []
-    log = in_order(_rows_with_fix(log, _fix_codes(log, notes), notes), notes)
+    log = _rows_with_fix(log, _fix_codes(log, notes), notes)
+    log = one_an_epoch(in_order(log, notes), notes)
     fix = log["fix"].astype(np.int64)
     lla, v_n = log.stack(POSITION), log.stack(VELOCITY)
     lla[~np.isfinite(lla).all(axis=1)] = np.nan
@@ -77,42 +78,6 @@ def gnss_from_log(log: Log) -> tuple[Gnss, list[Note]]:
     gnss = Gnss(log["time"], lla, sd, v_n, sd_v, fix)
     check_velocity(log, gnss)
     return gnss, notes
-
-
-def in_order(log: Log, notes: list[Note]) -> Log:
-    """Rows whose stamp is later than all before; the rest are dropped and noted.
-
-    Parameters
-    ----------
-    log : Log
-        Stamps all finite.
-    notes : list of Note
-        Appended to.
-
-    Returns
-    -------
-    Log
-
-    Raises
-    ------
-    RecordingError
-        If more than a tenth of the rows are out of order.
-    """
-    time = log["time"]
-    keep = np.ones(len(time), bool)
-    keep[1:-1] = ~((time[1:-1] > time[2:]) & (time[2:] > time[:-2]))
-    latest = np.maximum.accumulate(np.where(keep, time, -np.inf))
-    keep[1:] &= time[1:] > latest[:-1]
-    bad = int((~keep).sum())
-    if bad > max(2.0, _SPARE * len(log)) or len(log) - bad < 2:
-        k = int(np.argmin(keep))
-        log.refuse(
-            f"{bad} of {len(log)} stamps repeat or go back, this one first", "sort the file by time", k
-        )
-    if bad:
-        notes.append(log.note("rows whose stamp repeats or goes back dropped", bad))
-        return log.take(keep)
-    return log
 
 
 def check_positions(log: Log) -> NDArray[np.bool_]:
