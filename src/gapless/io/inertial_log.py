@@ -10,6 +10,7 @@ from gapless.io.clock import even_stamps, gap_length, intervals, nominal_interva
 from gapless.io.log import Log
 from gapless.io.order import in_order
 from gapless.io.silence import check_silence
+from gapless.io.streams import check_one_device
 from gapless.trip.recording import Array, Imu, Note
 
 GYRO: Final = ("gyro_x", "gyro_y", "gyro_z")
@@ -63,6 +64,7 @@ def imu_from_rates(log: Log, axes: Array | None = None) -> tuple[Imu, list[Note]
     log, notes = _sound_rows(log, GYRO, ACCEL)
     gyro, accel = log.stack(GYRO), log.stack(ACCEL)
     _check_units(log, gyro, accel)
+    check_one_device(log, np.column_stack([gyro, accel]))
     if "dt" in log:
         time, dt, mended = _given_intervals(log)
     else:
@@ -100,6 +102,7 @@ def imu_from_increments(log: Log) -> tuple[Imu, list[Note]]:
     dtheta, dvel = log.stack(DTHETA), log.stack(DVEL)
     period = nominal_interval(log["time"])
     _check_units(log, dtheta / period, dvel / period)
+    check_one_device(log, np.column_stack([dtheta, dvel]))
     time, dt, mended = _stamps(log)
     notes += mended
     late = np.flatnonzero(dt > 1.5 * period)

@@ -6,6 +6,7 @@ from typing import Final
 
 import numpy as np
 
+from gapless import earth
 from gapless.attitude import wrap
 from gapless.io.log import Log
 from gapless.io.order import in_order, one_an_epoch
@@ -46,6 +47,7 @@ def reference_from_log(log: Log) -> tuple[Trajectory, list[Note]]:
     n = len(log)
     lla = log.stack(POSITION)
     lla[:, :2] *= DEG
+    lla[:, 1] = earth.longitude(lla[:, 1])
     unknown = np.full((n, 9), np.nan)
     euler = log.stack(ATTITUDE) * DEG
     euler[:, [0, 2]] = wrap(euler[:, [0, 2]])
