@@ -19,8 +19,8 @@ from gapless.io.silence import MOST_SILENCE, in_words
 from gapless.trip.motion import horizontal_velocity, offset_ned
 from gapless.trip.recording import Array, Gnss, Imu, Odometer, Trajectory
 
-_HOLE: Final = 1.0
-"""Least silence beyond a usual interval that is asked about [s]."""
+_HOLE: Final = 1.5
+"""Least silence beyond a usual interval that is asked about [s]: longer than stamps are late."""
 _HARD: Final = 4.0
 """Braking and speeding up that few drivers exceed [m/s^2]."""
 _NEAR: Final = 5.0
@@ -29,8 +29,12 @@ _PAIRS: Final = 3
 """Fixes on either side of a hole that are held against each other; all must agree."""
 _WINDOW: Final = 300.0
 """Seconds after a hole in which two sensors' motions are compared."""
+_AGREED: Final = 0.7
+"""Least correlation of turns that are felt with those of the course."""
 _ENOUGH: Final = 30
 """Seconds of driving, or readings, below which nothing is concluded."""
+_MOST_MISFIT: Final = 5.0
+"""Difference of two speeds beyond which a larger one counts no more [m/s]."""
 _MOST_HOLES: Final = 200
 """Holes that are asked about, the longest first: it bounds the work on logs full of them."""
 
@@ -58,11 +62,11 @@ def check_positions_go_on(log: Log, path: Gnss | Trajectory) -> None:
         va, vb = (_velocity(time, lla, v_n, rows, side) for rows, side in ((a, -1), (b, 1)))
         gone = offset_ned(lla[b], lla[a])[:, :2]
         span = time[b] - time[a]
-        far = _least_way(span, np.hypot(*va.T), np.hypot(*vb.T))
+        far = _least_way(float(span[0]), float(np.hypot(*va[0])), float(np.hypot(*vb[0])))
         as_if = 0.5 * (va + vb) * (span - leap)[:, None]
         near = np.hypot(*(gone - as_if).T) < _NEAR + 0.2 * np.hypot(*as_if.T)
-        if (near & (np.hypot(*gone.T) + _NEAR < far)).all():
-            moved, speed = float(np.hypot(*gone[0])), float(np.hypot(*va[0]))
+        moved, speed = float(np.hypot(*gone[0])), float(np.hypot(*va[0]))
+        if near.all() and moved + _NEAR < far:
             _refuse(log, time[k], leap, f"the car moved {moved:.0f} m in {span[0]:.4g} s at {speed:.0f} m/s")
 
 
@@ -84,8 +88,8 @@ def check_sensors_go_on(imu_log: Log, imu: Imu, gnss_log: Log, gnss: Gnss) -> No
         for k, leap in _holes(time):
             begin = time[k] if sign < 0.0 else time[k - 1]
             after = gnss.take((gnss.time >= begin) & (gnss.time < begin + _WINDOW))
-            plain, moved = (_turning(imu, after, by) for by in (0.0, sign * leap))
-            if moved > 0.7 and moved > plain + 0.3:
+            before = gnss.take((gnss.time < time[k - 1]) & (gnss.time > time[k - 1] - _WINDOW))
+            if _agrees_moved(imu, after, sign * leap) and not _agrees_moved(imu, before, sign * leap):
                 _refuse(log, time[k], leap, "turns after it agree with the other sensor's only without")
         _check_years(log, time, imu.time)
 
@@ -113,11 +117,12 @@ def check_wheels_go_on(log: Log, wheels: Odometer, gnss: Gnss) -> None:
         rows = (time >= wheels.time[k - 1]) & (time < wheels.time[k - 1] + _WINDOW)
         if rows.sum() < _ENOUGH:
             continue
+        late = wheels.time[k:], np.abs(wheels.speed[k:])
         plain, moved = (
-            float(np.median(np.abs(np.interp(time[rows] + by, wheels.time[k:], wheels.speed[k:]) - speed[rows])))
+            float(np.clip(np.abs(np.interp(time[rows] + by, *late) - speed[rows]), 0.0, _MOST_MISFIT).mean())
             for by in (0.0, leap)
         )
-        if plain > 1.0 and moved < 0.5 * plain:
+        if plain > 0.5 and moved < 0.5 * plain:
             _refuse(log, wheels.time[k], leap, "speeds after it agree with the fixes' only without")
 
 
@@ -142,10 +147,16 @@ def _velocity(time: Array, lla: Array, v_n: Array, rows: NDArray[np.int64], side
     return np.where(np.isfinite(v_n[rows, :2]), v_n[rows, :2], way)
 
 
-def _least_way(span: Array, before: Array, after: Array) -> Array:
+def _least_way(span: float, before: float, after: float) -> float:
     """Shortest way [m] of a car that drove at one speed before and at another after."""
-    slowest = np.maximum(0.5 * (before + after - _HARD * span), 0.0)
-    return np.asarray((before**2 + after**2 - 2.0 * slowest**2) / (2.0 * _HARD))
+    slowest = max(0.5 * (before + after - _HARD * span), 0.0)
+    return (before**2 + after**2 - 2.0 * slowest**2) / (2.0 * _HARD)
+
+
+def _agrees_moved(imu: Imu, gnss: Gnss, later: float) -> bool:
+    """Whether turns agree, and leave half as much unexplained as those of stamps that are not moved."""
+    moved = _turning(imu, gnss, later)
+    return moved > _AGREED and 1.0 - moved**2 < 0.5 * (1.0 - _turning(imu, gnss, 0.0) ** 2)
 
 
 def _turning(imu: Imu, gnss: Gnss, later: float) -> float:

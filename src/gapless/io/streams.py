@@ -12,7 +12,7 @@ import numpy as np
 
 from gapless.io.log import Log
 from gapless.trip.motion import offset_ned
-from gapless.trip.recording import Array, Gnss
+from gapless.trip.recording import Array, Gnss, Odometer, Trajectory
 
 _ROWS: Final = 600
 """Rows that a verdict is formed on."""
@@ -26,6 +26,8 @@ _MOST: Final = 0.6
 """Share of the stretches that must say so: vibration at half the sampling rate passes by."""
 _APART: Final = 0.3
 """Least distance of two receivers' places [m]."""
+_FASTER: Final = 0.3
+"""Least difference of two cars' speeds [m/s]."""
 _PERIODS: Final = (2, 3)
 """Rows after which the same device speaks again: two as fast as each other, or one twice as fast."""
 _CURE: Final = "two devices', or two drives', rows are shuffled into one file: keep those of one"
@@ -49,23 +51,40 @@ def check_one_device(log: Log, triads: Array) -> None:
         log.refuse("rows belong to two devices by turns: they are like the next but one, not like the next", _CURE)
 
 
-def check_one_receiver(log: Log, gnss: Gnss) -> None:
-    """Refuse a GNSS log of two receivers in two places.
+def check_one_odometer(log: Log, wheels: Odometer) -> None:
+    """Refuse an odometer log of two drives.
 
     Parameters
     ----------
     log : Log
         For the error.
-    gnss : Gnss
+    wheels : Odometer
 
     Raises
     ------
     RecordingError
     """
-    known = np.isfinite(gnss.lla).all(axis=1)
-    if known.sum() < _FEW_ROWS:
+    if _alternate(wheels.speed[:, None], _FEW_ROWS, _FASTER):
+        log.refuse("speeds belong to two cars by turns: they are like the next but one, not like the next", _CURE)
+
+
+def check_one_receiver(log: Log, path: Gnss | Trajectory) -> None:
+    """Refuse positions of two receivers in two places.
+
+    Parameters
+    ----------
+    log : Log
+        For the error.
+    path : Gnss or Trajectory
+
+    Raises
+    ------
+    RecordingError
+    """
+    lla = path.lla[np.isfinite(path.lla).all(axis=1)]
+    if len(lla) < _FEW_ROWS:
         return
-    ned = offset_ned(gnss.lla[known], np.broadcast_to(gnss.lla[known][0], (int(known.sum()), 3)))
+    ned = offset_ned(lla, np.broadcast_to(lla[0], lla.shape))
     if _alternate(ned, _FEW_ROWS, _APART):
         log.refuse("positions belong to two places by turns: they are like the next but one, not like the next", _CURE)
 
