@@ -152,28 +152,40 @@ def _behind(time: Array) -> NDArray[np.bool_]:
 
 
 def _mended(log: Log, notes: list[Note]) -> Log:
-    """Late rows in their places, single wild stamps gone; anything else is a clock that started anew."""
+    """Late rows in their places, single stray stamps gone; anything else is a clock that started anew."""
     usual = nominal_interval(np.maximum.accumulate(log["time"][: HEAD + 1]))
-    wild = _far_off(log["time"], usual)
-    kept = log.take(~wild)
-    time, order, keep = kept["time"], np.arange(len(kept)), np.ones(len(kept), bool)
-    for a, b in _tangles(time):
-        if _fits(time, a, b, usual):
-            order[a:b] = a + np.argsort(time[a:b], kind="stable")
-            continue
-        late = a + np.flatnonzero(_late(time[a:b]))
-        after = np.append(time, np.inf)[late + 1]
-        if (after < time[late - 1] + _ROOM * usual).any():
-            _refuse_restart(kept, usual)
-        keep[late] = False
-    moved, bad = int((order != np.arange(len(order))).sum()), int(wild.sum() + (~keep).sum())
-    if bad > max(2.0, _SPARE * len(log)) or keep.sum() < 2:
+    found, moved = _late_in_place(log, usual)
+    found = found.take(~_far_off(found["time"], usual))
+    found, more = _late_in_place(found, usual)
+    found = found.take(~_strays(found, usual))
+    moved, bad = moved + more, len(log) - len(found)
+    if bad > max(2.0, _SPARE * len(log)) or len(found) < 2:
         _refuse_mixed(log, np.diff(log["time"]) < 0.0)
     if moved:
         notes.append(log.note("rows that were not in the order of their stamps put in order", moved))
     if bad:
         notes.append(log.note("rows whose stamp is out of line with those around it dropped", bad))
-    return kept.take(order[keep[order]])
+    return found
+
+
+def _late_in_place(log: Log, usual: float) -> tuple[Log, int]:
+    """Rows that came late put where they left a hole, and how many rows changed places."""
+    time, order = log["time"], np.arange(len(log))
+    for a, b in _tangles(time):
+        if _fits(time, a, b, usual):
+            order[a:b] = a + np.argsort(time[a:b], kind="stable")
+    return log.take(order), int((order != np.arange(len(order))).sum())
+
+
+def _strays(log: Log, usual: float) -> NDArray[np.bool_]:
+    """Late rows around which the others go on as if it were not there; it refuses those that do not."""
+    time, stray = log["time"], np.zeros(len(log), bool)
+    for a, b in _tangles(time):
+        late = a + np.flatnonzero(_late(time[a:b]))
+        if (np.append(time, np.inf)[late + 1] < time[late - 1] + _ROOM * usual).any():
+            _refuse_restart(log, usual)
+        stray[late] = True
+    return stray
 
 
 def _late(time: Array) -> NDArray[np.bool_]:
