@@ -57,7 +57,11 @@ def check_positions_go_on(log: Log, path: Gnss | Trajectory) -> None:
     time, lla, v_n = path.time[known], path.lla[known], path.v_n[known]
     for k, leap in _holes(time):
         a, b = k - 1 - np.arange(_PAIRS), k + np.arange(_PAIRS)
-        if a[-1] < 0 or b[-1] >= len(time) or max(time[k - 1] - time[a[-1]], time[b[-1]] - time[k]) > 5.0 + _HOLE:
+        if (
+            a[-1] < 0
+            or b[-1] >= len(time)
+            or max(time[k - 1] - time[a[-1]], time[b[-1]] - time[k]) > 5.0 + _HOLE
+        ):
             continue
         va, vb = (_velocity(time, lla, v_n, rows, side) for rows, side in ((a, -1), (b, 1)))
         gone = offset_ned(lla[b], lla[a])[:, :2]
@@ -169,7 +173,12 @@ def _check_years(log: Log, time: Array, imu: Array) -> None:
     """Refuse a log that leapt out of the IMU's time, and goes on there for as long as the IMU does."""
     for k, leap in _holes(time):
         left, goes_on = float(imu[-1] - time[k - 1]), float(time[-1] - time[k])
-        if leap > MOST_SILENCE and time[k] > imu[-1] and left > 60.0 and abs(left - goes_on) < 30.0 + 0.1 * left:
+        if (
+            leap > MOST_SILENCE
+            and time[k] > imu[-1]
+            and left > 60.0
+            and abs(left - goes_on) < 30.0 + 0.1 * left
+        ):
             _refuse(log, time[k], leap, "the IMU's goes on")
 
 

@@ -1,4 +1,4 @@
-"""Rows in the order of their stamps: copies, neighbours exchanged, single wild stamps; and clocks that start anew.
+"""Rows in the order of their stamps: copies, late rows, stray stamps; and clocks that start anew.
 
 A row that came late left a hole where it belongs, and is put there. Where time goes back and there is no
 hole, the clock was set back or started anew: two stretches of time lie over each other, and sorting
@@ -7,6 +7,7 @@ would shuffle them into one.
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import Final, NoReturn
 
 import numpy as np
@@ -106,9 +107,10 @@ def parts(log: Log, starts: NDArray[np.int64]) -> str:
     edges = [0, *starts[:3].tolist(), len(log)]
     if len(starts) > 3:
         edges[-1] = int(starts[3])
-    rows = [f"{log.number(a)} to {log.number(b - 1)}" for a, b in zip(edges[:-1], edges[1:], strict=True)]
+    rows = [f"{log.number(a)} to {log.number(b - 1)}" for a, b in pairwise(edges)]
     more = ", and so on" if len(starts) > 3 else ""
-    return f"part the log there, and the other logs at the same moment: rows {', '.join(rows)}{more} are drives apart"
+    apart = f"rows {', '.join(rows)}{more} are drives apart"
+    return f"part the log there, and the other logs at the same moment: {apart}"
 
 
 def _without_copies(log: Log, notes: list[Note]) -> Log:
@@ -144,7 +146,7 @@ def _same(log: Log, rows: NDArray[np.int64], others: NDArray[np.int64]) -> NDArr
 
 
 def _behind(time: Array) -> NDArray[np.bool_]:
-    """Rows whose time was there already: earlier than one before, or level with it and right after such a row."""
+    """Rows whose time was there already: before the latest, or level with it and right after such a row."""
     latest = np.maximum.accumulate(time)[:-1]
     behind = np.concatenate([[False], time[1:] < latest])
     behind[1:] |= (time[1:] == latest) & behind[:-1]
@@ -153,7 +155,7 @@ def _behind(time: Array) -> NDArray[np.bool_]:
 
 def _mended(log: Log, notes: list[Note]) -> Log:
     """Late rows in their places, single stray stamps gone; anything else is a clock that started anew."""
-    usual = nominal_interval(np.maximum.accumulate(log["time"][: HEAD + 1]))
+    usual = _usual(log["time"])
     found, moved = _late_in_place(log, usual)
     found = found.take(~_far_off(found["time"], usual))
     found, more = _late_in_place(found, usual)
@@ -166,6 +168,14 @@ def _mended(log: Log, notes: list[Note]) -> Log:
     if bad:
         notes.append(log.note("rows whose stamp is out of line with those around it dropped", bad))
     return found
+
+
+def _usual(time: Array) -> float:
+    """The nominal interval of stamps that go back here and there."""
+    step = np.diff(time[: HEAD + 1])
+    middle = float(np.median(step[step > 0.0])) if (step > 0.0).any() else 0.0
+    step = step[(step >= 0.0) & (step <= _REACH * middle)]
+    return nominal_interval(np.cumsum(np.append(0.0, step))) if len(step) else 0.0
 
 
 def _late_in_place(log: Log, usual: float) -> tuple[Log, int]:

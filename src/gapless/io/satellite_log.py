@@ -89,9 +89,9 @@ def gnss_from_log(log: Log) -> tuple[Gnss, list[Note]]:
 MOST_LATITUDE: Final = 89.9
 """Latitude [deg] up to which north, east and heading serve to navigate.
 
-Meridians converge by tan(lat) / R: at 89.9, 11 km from the pole, by 5 degrees a kilometre driven east, and 100 m
-of position error are 0.5 degrees of heading, as much as the filter knows it to. Up to there simulated drives are
-navigated as well as at 48; beyond, a drive may cross the pole itself, where there is no north.
+Meridians converge by tan(lat) / R: at 89.9, 11 km from the pole, by 5 degrees a kilometre driven east, and
+100 m of position error are 0.5 degrees of heading, as much as the filter knows it to. Up to there simulated
+drives are navigated as well as at 48; beyond, a drive may cross the pole itself, where there is no north.
 """
 
 
@@ -117,8 +117,8 @@ def check_positions(log: Log) -> NDArray[np.bool_]:
     if polar.sum() > max(2.0, _SPARE * there.sum()):
         k = int(np.argmax(polar))
         log.refuse(
-            f"lat {lat[k]:.7g} is within {90.0 - MOST_LATITUDE:.1g} degrees of a pole, where north and heading "
-            "turn with every metre",
+            f"lat {lat[k]:.7g} is within {90.0 - MOST_LATITUDE:.1g} degrees of a pole, "
+            "where north and heading turn with every metre",
             f"navigation holds up to {MOST_LATITUDE:g} degrees; give the part of the drive that lies below",
             k,
         )

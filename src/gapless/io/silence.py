@@ -48,7 +48,7 @@ def in_words(seconds: float) -> str:
     -------
     str
     """
-    for unit, length in (("years", 365.25 * 86400.0), ("days", 86400.0), ("hours", 3600.0)):
+    for unit, length in (("years", 365.25 * 86400.0), ("days", 86400.0), ("h", 3600.0)):
         if seconds >= length:
             return f"{seconds:.10g} s ({seconds / length:.3g} {unit})"
     return f"{seconds:.4g} s"

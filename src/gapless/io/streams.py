@@ -48,7 +48,9 @@ def check_one_device(log: Log, triads: Array) -> None:
     RecordingError
     """
     if _alternate(triads, _ROWS, 0.0):
-        log.refuse("rows belong to two devices by turns: they are like the next but one, not like the next", _CURE)
+        log.refuse(
+            "rows belong to two devices by turns: they are like the next but one, not like the next", _CURE
+        )
 
 
 def check_one_odometer(log: Log, wheels: Odometer) -> None:
@@ -65,7 +67,9 @@ def check_one_odometer(log: Log, wheels: Odometer) -> None:
     RecordingError
     """
     if _alternate(wheels.speed[:, None], _FEW_ROWS, _FASTER):
-        log.refuse("speeds belong to two cars by turns: they are like the next but one, not like the next", _CURE)
+        log.refuse(
+            "speeds belong to two cars by turns: they are like the next but one, not like the next", _CURE
+        )
 
 
 def check_one_receiver(log: Log, path: Gnss | Trajectory) -> None:
@@ -86,7 +90,10 @@ def check_one_receiver(log: Log, path: Gnss | Trajectory) -> None:
         return
     ned = offset_ned(lla, np.broadcast_to(lla[0], lla.shape))
     if _alternate(ned, _FEW_ROWS, _APART):
-        log.refuse("positions belong to two places by turns: they are like the next but one, not like the next", _CURE)
+        log.refuse(
+            "positions belong to two places by turns: they are like the next but one, not like the next",
+            _CURE,
+        )
 
 
 def _alternate(values: Array, rows: int, least: float) -> bool:
@@ -102,10 +109,12 @@ def _alternate(values: Array, rows: int, least: float) -> bool:
         off = values[half : half + len(around)] - around
         n = rows // period
         count = len(off) // (n * period)
+        if not count:
+            continue
         turns = off[: count * n * period].reshape(count, n, period, -1)
         mean, scatter = turns.mean(axis=1), turns.std(axis=1)
         size = np.abs(mean - mean.mean(axis=1, keepdims=True))  # a bend is in all of them
         sure = (size > _SURE * scatter / np.sqrt(n)) & (size > _SIZE * scatter) & (size > least)
-        if count and np.mean(sure.any(axis=(1, 2))) > _MOST:
+        if np.mean(sure.any(axis=(1, 2))) > _MOST:
             return True
     return False

@@ -11,7 +11,7 @@ from gapless.trip.motion import FIRST_MOTION_SPEED, offset_ned, velocity_from_po
 from gapless.trip.recording import Array, Note
 
 _FAR: Final = 30.0
-"""Way from the first fixes [m] from which on a car is said to have moved: ten times a single point's noise."""
+"""Way from the first fixes [m] that count as having moved: ten times a single point's noise."""
 _AT_LEAST: Final = 5
 """Fixes as far as that, at least: a few may be astray."""
 

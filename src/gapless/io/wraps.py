@@ -47,8 +47,9 @@ def unwrapped(logs: Mapping[str, Log]) -> tuple[dict[str, Log], list[Note]]:
             time, first = _unwrapped(found[sensor]["time"], count)
             if first is not None:
                 counts.add(count)
-                what = f"the clock counts {name} and began again at row {log.number(first)}; {count:.10g} s added"
-                notes.append(log.note(what + " from there on", len(time) - first))
+                what = f"the clock counts {name} and began again at row {log.number(first)}"
+                added = f"; {count:.10g} s added from there on"
+                notes.append(log.note(what + added, len(time) - first))
                 found[sensor] = _stamped(found[sensor], time)
     for count in counts:
         notes += _together(found, logs, count)
@@ -74,11 +75,13 @@ def _unwrapped(time: Array, count: float) -> tuple[Array, int | None]:
 
 
 def _together(found: dict[str, Log], logs: Mapping[str, Log], count: float) -> list[Note]:
-    """Logs moved by a count so that they lie beside the others, where some began again and some began after."""
+    """Logs moved by a count so that they lie beside the others, where only some hold its end."""
     notes = []
     whole = [s for s, log in logs.items() if "time" in log and found[s] is log]
     across = [s for s in found if found[s] is not logs[s]]
-    low, high = (edge([edge(found[s]["time"][np.isfinite(found[s]["time"])]) for s in across]) for edge in (min, max))
+    low, high = (
+        edge([edge(found[s]["time"][np.isfinite(found[s]["time"])]) for s in across]) for edge in (min, max)
+    )
     for sensor in whole:
         time = logs[sensor]["time"]
         known = time[np.isfinite(time)]

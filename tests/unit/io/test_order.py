@@ -65,7 +65,7 @@ def test_a_row_that_comes_late_is_put_where_its_hole_is(k, late):
 @settings(max_examples=60, deadline=None)
 @given(st.integers(2, 297), st.one_of(st.integers(2, 250), st.floats(1.3, 250.0)))
 def test_a_clock_set_back_is_never_mended(k, by):
-    """By so many intervals: nearer than 1.3 a row looks like a stray one, and level with the last like a tick."""
+    """By so many intervals: nearer than 1.3 a row looks like a stray one, and by one like a tick."""
     time = np.arange(300.0) - by * (np.arange(300) >= k)
     assert f"imu.csv:{k + 2}: the clock starts anew or was set back" in refusal(log(time))
 
@@ -84,7 +84,11 @@ def test_rows_to_part_a_log_at_are_named():
 
 @pytest.mark.parametrize(
     "rows",
-    [np.repeat(np.arange(300), 2), np.tile(np.arange(300), 2), np.append(np.arange(300), np.arange(100, 300))],
+    [
+        np.repeat(np.arange(300), 2),
+        np.tile(np.arange(300), 2),
+        np.append(np.arange(300), np.arange(100, 300)),
+    ],
     ids=["each twice", "the whole file twice", "its end twice"],
 )
 def test_the_same_rows_twice(rows):

@@ -34,7 +34,9 @@ def write_geojson(solution: Solution, path: Path) -> None:
 def _feature(solution: Solution, source: str, rows: slice) -> dict[str, Any]:
     columns = solution_columns(solution)
     time = columns["time"][rows]
-    lines = [_line(part) for part in cut(np.column_stack([columns[n][rows] for n in ("lon", "lat", "height")]))]
+    lines = [
+        _line(part) for part in cut(np.column_stack([columns[n][rows] for n in ("lon", "lat", "height")]))
+    ]
     geometry = (
         {"type": "LineString", "coordinates": lines[0]}
         if len(lines) == 1

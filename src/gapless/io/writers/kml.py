@@ -26,7 +26,8 @@ COLOURS: Final = {
 def write_kml(solution: Solution, path: Path) -> None:
     """Write one line per stretch of one source, in that source's colour.
 
-    Lines are cut where they cross 180 degrees, and lie on the ground: KML counts heights from the geoid, ours are above the ellipsoid.
+    Lines are cut where they cross 180 degrees. They lie on the ground: KML counts heights from the geoid,
+    ours are above the ellipsoid.
 
     Parameters
     ----------
