@@ -1,4 +1,4 @@
-"""Where a log's time or place jumps: counts that end, clocks that leap, two devices' rows, null island, poles."""
+"""Where a log's time or place jumps: counts that end, clocks that leap, two devices' rows, poles."""
 
 from functools import cache
 
