@@ -184,4 +184,5 @@ def _check_years(log: Log, time: Array, imu: Array) -> None:
 
 def _refuse(log: Log, time: float, leap: float, why: str) -> NoReturn:
     k = int(np.flatnonzero(log["time"] == time)[0])
-    log.refuse(f"the clock leaps ahead by {in_words(leap)} here ({why})", parts(log, np.array([k])), k)
+    cure = f"{parts(log, np.array([k]))}; or take {leap:.6g} s off from there on, in each log that leapt"
+    log.refuse(f"the clock leaps ahead by {in_words(leap)} here ({why})", cure, k)
