@@ -90,9 +90,9 @@ MOST_LATITUDE: Final = 89.9
 """Latitude [deg] up to which north, east and heading serve to navigate.
 
 Meridians converge by tan(lat) / R: at 89.9, 11 km from the pole, by 5 degrees a kilometre driven east, and
-100 m of position error are 0.5 degrees of heading, as much as the filter knows it to. Simulated drives of 9 km
-that begin at up to 89.9 are navigated as well as at 48, their clocks told; nothing broke at 89.95 either, but
-from there a drive reaches the pole itself, where there is no north.
+100 m of position error are 0.5 degrees of heading, as much as the filter knows it to. Simulated drives of
+some km that begin at up to 89.89 are navigated as well as at 48, their clocks told; nothing broke at 89.95
+either, but from there a drive reaches the pole itself, where there is no north.
 """
 
 
