@@ -28,9 +28,9 @@ sequence. In equations P is the covariance, H, R, K, S the measurement's matrice
 Units
 -----
 SI and radians in every array; degrees in files, on the command line, in recipes and in reports,
-and there only. Heights are above the ellipsoid. A specific force at rest points up: (0, 0, -g)
-in FRD. Positions are those of the IMU, attitudes those of its box, unless something else is said;
-a lever arm goes from the IMU to the antenna, in b.
+and there only. Longitudes lie in [-pi, pi), heights are above the ellipsoid. A specific force at rest
+points up: (0, 0, -g) in FRD. Positions are those of the IMU, attitudes those of its box, unless
+something else is said; a lever arm goes from the IMU to the antenna, in b.
 
 Clocks
 ------

@@ -30,6 +30,23 @@ _GRAVITY_M: Final = RATE**2 * SEMI_MAJOR**3 * (1.0 - FLATTENING) / GM
 
 
 @inline
+def longitude(angle: Any) -> Any:
+    """A longitude, or a difference of two, between -pi and pi: the way round the earth that is shorter.
+
+    Parameters
+    ----------
+    angle : float or ndarray
+        [rad]
+
+    Returns
+    -------
+    float or ndarray
+        In [-pi, pi); what lies there comes back bit for bit.
+    """
+    return angle - 2.0 * np.pi * np.floor((angle + np.pi) / (2.0 * np.pi))
+
+
+@inline
 def radii(sin_lat: Any) -> tuple[Any, Any]:
     """Meridian and transverse radii of curvature R_M, R_N [m].
 

@@ -6,6 +6,7 @@ from typing import Final
 
 import numpy as np
 
+from gapless import earth
 from gapless.attitude import wrap
 from gapless.trip.recording import Array, Trajectory
 
@@ -51,6 +52,7 @@ def interpolate(trajectory: Trajectory, time: Array, max_gap: float = MAX_GAP) -
         return value
 
     lla = np.column_stack([blend(trajectory.lla[:, :2], True), blend(trajectory.lla[:, 2])])
+    lla[:, 1] = earth.longitude(lla[:, 1])
     return Trajectory(
         time=time,
         lla=lla,

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from gapless import attitude
+from gapless import attitude, earth
 from gapless.inertial.belief import Belief
 from gapless.inertial.layout import ROW, Layout
 from gapless.trip.recording import Array, Trajectory
@@ -197,9 +197,10 @@ class Journal:
         n = self.layout.n
         x, var = np.array(self.states).reshape(-1, n + 1), self._stated()
         euler = attitude.to_euler(x[:, 6:10])
+        lla = np.column_stack([x[:, 0], earth.longitude(x[:, 1]), x[:, 2]])
         sd = np.sqrt(np.column_stack([var[:, :6], _euler_variance(var, n, euler)]))
         return Trajectory(
-            np.array(self.times), x[:, :3], x[:, 3:6], euler, sd, var[:, n], np.array(self.sources, dtype=str)
+            np.array(self.times), lla, x[:, 3:6], euler, sd, var[:, n], np.array(self.sources, dtype=str)
         )
 
     def blocks(self) -> tuple[dict[str, Array], dict[str, Array]]:

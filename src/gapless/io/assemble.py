@@ -6,11 +6,13 @@ import numpy as np
 
 from gapless.io.edges import FAR, FAR_IMU, of_the_trip, without_strays
 from gapless.io.inertial_log import imu_from_increments, imu_from_rates
+from gapless.io.leaps import check_positions_go_on, check_sensors_go_on, check_wheels_go_on
 from gapless.io.log import Log
 from gapless.io.orientation import check_orientation
 from gapless.io.other_logs import odometer_from_log, reference_from_log
 from gapless.io.plausible import check_odometer
 from gapless.io.satellite_log import gnss_from_log
+from gapless.io.wraps import unwrapped
 from gapless.trip.recording import Array, Imu, Note, Recording
 
 
@@ -54,22 +56,28 @@ def assemble(
     RecordingError
         If a log cannot be used, or IMU and GNSS do not overlap in time.
     """
-    notes = list[Note]()
+    given = {"imu": imu, "gnss": gnss, "odometer": odometer, "reference": reference}
+    logs, notes = unwrapped({sensor: log for sensor, log in given.items() if log is not None})
+    imu, gnss, odometer, reference = logs["imu"], logs["gnss"], logs.get("odometer"), logs.get("reference")
     imu = without_strays(imu, FAR_IMU, notes)
     samples, more = imu_from_increments(imu) if "dtheta_x" in imu else imu_from_rates(imu, axes)
     notes += more
     gnss = _tidied(gnss, samples, notes)
     fixes, more = gnss_from_log(gnss)
     notes += more
+    check_positions_go_on(gnss, fixes)
+    check_sensors_go_on(imu, samples, gnss, fixes)
     wheel = truth = None
     if odometer is not None:
         odometer = _tidied(odometer, samples, notes)
         wheel, more = odometer_from_log(odometer)
+        check_wheels_go_on(odometer, wheel, fixes)
         check_odometer(odometer, wheel, fixes)
         notes += more
     if reference is not None:
         truth, more = reference_from_log(_tidied(reference, samples, notes))
         notes += more
+        check_positions_go_on(reference, truth)
         if (
             reference_clock is None
             and not np.isfinite(truth.euler).any()

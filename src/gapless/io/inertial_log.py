@@ -8,6 +8,9 @@ import numpy as np
 
 from gapless.io.clock import even_stamps, gap_length, intervals, nominal_interval
 from gapless.io.log import Log
+from gapless.io.order import in_order
+from gapless.io.silence import check_silence
+from gapless.io.streams import check_one_device
 from gapless.trip.recording import Array, Imu, Note
 
 GYRO: Final = ("gyro_x", "gyro_y", "gyro_z")
@@ -61,6 +64,7 @@ def imu_from_rates(log: Log, axes: Array | None = None) -> tuple[Imu, list[Note]
     log, notes = _sound_rows(log, GYRO, ACCEL)
     gyro, accel = log.stack(GYRO), log.stack(ACCEL)
     _check_units(log, gyro, accel)
+    check_one_device(log, np.column_stack([gyro, accel]))
     if "dt" in log:
         time, dt, mended = _given_intervals(log)
     else:
@@ -98,6 +102,7 @@ def imu_from_increments(log: Log) -> tuple[Imu, list[Note]]:
     dtheta, dvel = log.stack(DTHETA), log.stack(DVEL)
     period = nominal_interval(log["time"])
     _check_units(log, dtheta / period, dvel / period)
+    check_one_device(log, np.column_stack([dtheta, dvel]))
     time, dt, mended = _stamps(log)
     notes += mended
     late = np.flatnonzero(dt > 1.5 * period)
@@ -123,13 +128,11 @@ def _sound_rows(log: Log, gyro: tuple[str, ...], accel: tuple[str, ...]) -> tupl
     if bad:
         notes.append(log.note("rows without a value dropped, bridged by the next sample", bad))
         log = log.take(whole)
-    _check_order(log)
-    again = 1 + np.flatnonzero(np.diff(log["time"]) == 0.0)
-    again = again[np.logical_and.reduce([log[name][again] == log[name][again - 1] for name in names])]
-    if len(again):
-        notes.append(log.note("rows that repeat the one before dropped", len(again)))
-        log = log.take(np.delete(np.arange(len(log)), again))
+    log = in_order(log, notes)
+    if not np.diff(log["time"]).any():
+        log.refuse("all stamps are the same", "log the time of each sample")
     _check_time_unit(log)
+    check_silence(log)
     return _without_spikes(log, gyro, accel, notes), notes
 
 
@@ -150,21 +153,6 @@ def _without_spikes(log: Log, gyro: tuple[str, ...], accel: tuple[str, ...], not
         notes.append(log.note("rows with impossible values dropped, bridged by the next sample", bad))
         return log.take(~wild)
     return log
-
-
-def _check_order(log: Log) -> None:
-    step = np.diff(log["time"])
-    back = np.flatnonzero(step < 0.0)
-    if not len(back):
-        if not step.any():
-            log.refuse("all stamps are the same", "log the time of each sample")
-        return
-    k = int(back[0]) + 1
-    by = -float(step[k - 1])
-    cure = "sort the file by time"
-    if abs(by - 604800.0) < 10.0:
-        cure = "a GPS week began: add 604800 s to the stamps from there on"
-    log.refuse(f"time goes back by {by:.6g} s", cure, k)
 
 
 def _check_time_unit(log: Log) -> None:
@@ -243,7 +231,7 @@ def _given_intervals(log: Log) -> tuple[Array, Array, list[Note]]:
         log.refuse(what, "mend it, or leave the column out", k)
     gap = silent > gap_length(float(np.median(dt)))
     if log.rows is not None:
-        lost = 1 + np.flatnonzero((np.diff(log.rows) > 1) & ~gap)
+        lost = 1 + np.flatnonzero((np.diff(np.sort(log.rows)) > 1) & ~gap)
         dt[lost] = time[lost] - time[lost - 1]
     return time, dt, _gap_notes(log, np.diff(time)[gap])
 

@@ -6,9 +6,12 @@ from typing import Final
 
 import numpy as np
 
+from gapless import earth
 from gapless.attitude import wrap
 from gapless.io.log import Log
-from gapless.io.satellite_log import POSITION, VELOCITY, check_positions, in_order
+from gapless.io.order import in_order, one_an_epoch
+from gapless.io.satellite_log import POSITION, VELOCITY, check_positions
+from gapless.io.streams import check_one_odometer, check_one_receiver
 from gapless.trip.recording import Note, Odometer, Trajectory
 from gapless.units import DEG
 
@@ -45,11 +48,14 @@ def reference_from_log(log: Log) -> tuple[Trajectory, list[Note]]:
     n = len(log)
     lla = log.stack(POSITION)
     lla[:, :2] *= DEG
+    lla[:, 1] = earth.longitude(lla[:, 1])
     unknown = np.full((n, 9), np.nan)
     euler = log.stack(ATTITUDE) * DEG
     euler[:, [0, 2]] = wrap(euler[:, [0, 2]])
     source = np.full(n, "reference")
-    return Trajectory(log["time"], lla, log.stack(VELOCITY), euler, unknown, unknown[:, 0], source), notes
+    path = Trajectory(log["time"], lla, log.stack(VELOCITY), euler, unknown, unknown[:, 0], source)
+    check_one_receiver(log, path)
+    return path, notes
 
 
 def odometer_from_log(log: Log) -> tuple[Odometer, list[Note]]:
@@ -77,7 +83,9 @@ def odometer_from_log(log: Log) -> tuple[Odometer, list[Note]]:
         k = int(np.argmax(wild))
         log.refuse(f"a speed of {speed[k]:.4g} m/s", "log speed in m/s", k)
     log, notes = _known(log, np.isfinite(log["time"]) & np.isfinite(speed) & ~wild)
-    return Odometer(log["time"], log["speed"]), notes
+    wheels = Odometer(log["time"], log["speed"])
+    check_one_odometer(log, wheels)
+    return wheels, notes
 
 
 def _known(log: Log, keep: np.ndarray[tuple[int, ...], np.dtype[np.bool_]]) -> tuple[Log, list[Note]]:
@@ -88,4 +96,4 @@ def _known(log: Log, keep: np.ndarray[tuple[int, ...], np.dtype[np.bool_]]) -> t
     if bad:
         notes.append(log.note("rows without a usable value dropped", bad))
         log = log.take(keep)
-    return in_order(log, notes), notes
+    return one_an_epoch(in_order(log, notes), notes), notes

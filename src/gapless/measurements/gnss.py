@@ -84,7 +84,7 @@ def position(
     r_m, r_n = earth.radii(np.sin(x[0]))
     z = np.empty(3)
     z[0] = (lla[0] - x[0]) * (r_m + x[2]) - cl[0]
-    z[1] = (lla[1] - x[1]) * (r_n + x[2]) * np.cos(x[0]) - cl[1]
+    z[1] = earth.longitude(lla[1] - x[1]) * (r_n + x[2]) * np.cos(x[0]) - cl[1]
     z[2] = x[2] - lla[2] - cl[2]
     h, r = np.zeros((3, n)), np.zeros((3, 3))
     for i in range(3):

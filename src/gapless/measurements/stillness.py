@@ -15,6 +15,7 @@ from typing import Any, ClassVar, Self
 
 import numpy as np
 
+from gapless import earth
 from gapless._numba import inline, kernel
 from gapless.attitude import matrix_rows
 from gapless.inertial.belief import Belief
@@ -224,9 +225,9 @@ class Stillness(Constraint):
         if gap < 3.5:
             return
         if gap < 6.0:
-            step = (reading.value - self.fix) * 6.37e6
-            east = step[1] * math.cos(reading.value[0])
-            self._file(reading.time, math.hypot(step[0], east) / gap, 0.35)
+            north, east = reading.value[:2] - self.fix[:2]
+            east = earth.longitude(east) * math.cos(reading.value[0])
+            self._file(reading.time, math.hypot(6.37e6 * north, 6.37e6 * east) / gap, 0.35)
         self.fix_time, self.fix = reading.time, np.array(reading.value)
 
     def _file(self, time: float, speed: float, slow: float) -> None:

@@ -105,4 +105,4 @@ class Stretch:
 def _metres(away: Array, latitude: Array) -> tuple[Array, Array]:
     """North and east of small differences in latitude and longitude [m]."""
     r_m, r_n = earth.radii(np.sin(latitude))
-    return away[:, 0] * r_m, away[:, 1] * r_n * np.cos(latitude)
+    return away[:, 0] * r_m, earth.longitude(away[:, 1]) * r_n * np.cos(latitude)

@@ -254,7 +254,7 @@ def point(path: Path, t: Array, lever: Triple) -> tuple[Array, Array, Array]:
     height = m.lla[2] - d[2]
     sag = 0.5 * (d[0] ** 2 / r_m + d[1] ** 2 / r_n)
     lat = m.lla[0] + d[0] / (r_m + height) - 0.5 * np.tan(m.lla[0]) * d[1] ** 2 / (r_m * r_n)
-    lon = m.lla[1] + d[1] / ((r_n + height) * np.cos(lat))
+    lon = earth.longitude(m.lla[1] + d[1] / ((r_n + height) * np.cos(lat)))
     lla = np.stack([lat, lon, height + sag], axis=-1)
     return lla, (v_axle - _cross(tilt, v_axle)).T, np.moveaxis(c_nc, -1, 0)
 

@@ -83,7 +83,9 @@ def displace(lla: Array, ned: Array) -> Array:
     r_m, r_n = earth.radii(np.sin(lla[:, 0]))
     h = lla[:, 2]
     scale = np.column_stack([1.0 / (r_m + h), 1.0 / ((r_n + h) * np.cos(lla[:, 0])), np.full(len(lla), -1.0)])
-    return np.asarray(lla + ned * scale)
+    moved = np.asarray(lla + ned * scale)
+    moved[:, 1] = earth.longitude(moved[:, 1])
+    return moved
 
 
 def velocity_from_positions(time: Array, lla: Array) -> Array:

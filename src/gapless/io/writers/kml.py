@@ -6,9 +6,12 @@ from pathlib import Path
 from typing import Final
 from xml.sax.saxutils import escape
 
+import numpy as np
+
 from gapless.io.marks import MARK
 from gapless.io.writers.atomic import atomic
-from gapless.io.writers.table import runs, solution_columns
+from gapless.io.writers.table import cut, runs, solution_columns
+from gapless.trip.recording import Array
 from gapless.trip.solution import Solution
 
 COLOURS: Final = {
@@ -24,7 +27,8 @@ COLOURS: Final = {
 def write_kml(solution: Solution, path: Path) -> None:
     """Write one line per stretch of one source, in that source's colour.
 
-    Lines lie on the ground: KML counts heights from the geoid, ours are above the ellipsoid.
+    Lines are cut where they cross 180 degrees. They lie on the ground: KML counts heights from the geoid,
+    ours are above the ellipsoid.
 
     Parameters
     ----------
@@ -32,7 +36,7 @@ def write_kml(solution: Solution, path: Path) -> None:
     path : Path
     """
     columns = solution_columns(solution)
-    points = list(zip(*(columns[name].tolist() for name in ("lon", "lat", "height")), strict=True))
+    points = np.column_stack([columns[name] for name in ("lon", "lat", "height")])
     styles = "".join(
         f'<Style id="{source}"><LineStyle><color>{colour}</color><width>4</width></LineStyle></Style>\n'
         for source, colour in COLOURS.items()
@@ -44,15 +48,19 @@ def write_kml(solution: Solution, path: Path) -> None:
     parts.append(f"<name>{clean(solution.name)}</name>\n{styles}")
     for source, rows in runs(solution):
         start, end = (solution.trajectory.time[rows][i] - solution.start for i in (0, -1))
-        line = points[rows] * (2 if end == start else 1)
-        coordinates = " ".join("{:.9f},{:.9f},{:.3f}".format(*point) for point in line)
+        lines = [_line(part) for part in cut(points[rows])]
+        drawn = lines[0] if len(lines) == 1 else f"<MultiGeometry>{''.join(lines)}</MultiGeometry>"
         parts.append(
             f"<Placemark><name>{clean(source)} {start:.1f} to {end:.1f} s</name>"
-            f"<styleUrl>#{clean(source)}</styleUrl><LineString><tessellate>1</tessellate>"
-            f"<coordinates>{coordinates}</coordinates></LineString></Placemark>\n"
+            f"<styleUrl>#{clean(source)}</styleUrl>{drawn}</Placemark>\n"
         )
     with atomic(path) as temporary:
         temporary.write_text("".join([*parts, "</Document></kml>\n"]), "utf-8")
+
+
+def _line(points: Array) -> str:
+    coordinates = " ".join("{:.9f},{:.9f},{:.3f}".format(*point) for point in points.tolist())
+    return f"<LineString><tessellate>1</tessellate><coordinates>{coordinates}</coordinates></LineString>"
 
 
 def clean(text: str) -> str:

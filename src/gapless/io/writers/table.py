@@ -122,6 +122,32 @@ def runs(solution: Solution) -> Iterator[tuple[str, slice]]:
         yield str(source[a]), slice(max(a - 1, 0), b)
 
 
+def cut(points: Array) -> list[Array]:
+    """A line in pieces, none of which crosses the meridian of 180 degrees.
+
+    Parameters
+    ----------
+    points : ndarray, shape (n, 3)
+        Longitude, latitude [deg], height [m].
+
+    Returns
+    -------
+    list of ndarray, shape (k, 3)
+        Each of two points or more; where it was cut, one piece ends and the next begins on the meridian.
+    """
+    lon = points[:, 0]
+    crossings = 1 + np.flatnonzero(np.abs(np.diff(lon)) > 180.0)
+    pieces, begin, head = list[Array](), 0, np.empty((0, 3))
+    for k in crossings.tolist():
+        seam = float(np.copysign(180.0, lon[k - 1]))
+        share = (seam - lon[k - 1]) / (lon[k] + 2.0 * seam - lon[k - 1])
+        at = points[k - 1, 1:] + share * (points[k, 1:] - points[k - 1, 1:])
+        pieces.append(np.vstack([head, points[begin:k], [seam, *at]]))
+        begin, head = k, np.array([[-seam, *at]])
+    pieces.append(np.vstack([head, points[begin:]]))
+    return [piece if len(piece) > 1 else np.vstack([piece, piece]) for piece in pieces]
+
+
 def _arrow(kind: Any, values: Any) -> Any:
     import pyarrow as pa
 
