@@ -19,9 +19,11 @@ from gapless.fold.tape import Tape
 from gapless.inertial import propagate as at
 from gapless.inertial.belief import Belief, inject
 from gapless.inertial.cubature import propagate_points
-from gapless.inertial.pieces import GAP, pieces, without_holes
+from gapless.inertial.lately import Filling
+from gapless.inertial.pieces import parted, pieces, without_holes
 from gapless.measurements.base import Observation
-from gapless.trip.events import EPS, Event, ImuBlock, Motion, Reading
+from gapless.trip.events import EPS, GAP, Event, ImuBlock, Motion, Reading
+from gapless.trip.recording import Array
 
 __all__ = ["Navigator", "Settings"]
 
@@ -214,19 +216,33 @@ class Navigator:
     # --- samples --------------------------------------------------------------------------------
 
     def _feel(self, block: ImuBlock) -> None:
-        """Run through samples, stopping at holes between them and wherever a reading waits."""
+        """Run through samples, bridging holes between them and stopping wherever a reading waits."""
         state = self._state
         for stretch in without_holes(block):
-            begin = float(stretch.time[0] - stretch.dt[0])
-            if begin - state.clock > GAP:
-                self._gap(begin)
-            for piece in pieces(stretch, state.pending, state.belief.memory):
-                if piece.last > piece.first:
-                    self._run(*piece)
-                if piece.due:
-                    self._apply_due()
+            silent = parted(state.clock, stretch)
+            if silent > GAP:
+                self._gap(float(stretch.time[0] - stretch.dt[0]))
+            elif silent:
+                self._bridge(state.lately.across(state.clock, stretch.rows(0, 1)))
+            self._go(stretch)
+            state.lately.feel(stretch)
 
-    def _run(self, block: ImuBlock, first: int, last: int, due: bool) -> None:
+    def _bridge(self, filling: Filling) -> None:
+        """Go through a hole by what was felt on both sides; what listens to samples is told of it."""
+        for constraint in self._state.constraints.values():
+            constraint.lost()
+        self._state.guessed = True
+        self._go(filling.block, filling.doubt)
+
+    def _go(self, stretch: ImuBlock, doubt: Array | None = None) -> None:
+        """Run through samples without a hole; `doubt` of those that are guessed."""
+        for piece in pieces(stretch, self._state.pending, self._state.belief.memory):
+            if piece.last > piece.first:
+                self._run(*piece, doubt)
+            if piece.due:
+                self._apply_due()
+
+    def _run(self, block: ImuBlock, first: int, last: int, due: bool, doubt: Array | None) -> None:
         """Propagate samples first..last-1, ticking on the way; `due`: an observation waits there."""
         s, state = self.settings, self._state
         if state.aligner is not None:
@@ -235,7 +251,7 @@ class Navigator:
         if not state.aligned:
             state.clock = float(block.time[last - 1])
             return
-        if state.bridges and last > first:
+        if state.bridges and last > first and doubt is None:
             felt = block.rows(first, last)
             for bridge in state.bridges:
                 bridge.feel(felt)
@@ -250,7 +266,9 @@ class Navigator:
                 b.x, b.memory, s.layout.width, b.p, b.scratch, b.error, s.layout.offsets, state.noise,
                 block.time, block.dt, block.dtheta, block.dvel, first, end, s.period, s.tick, flush,
             )  # fmt: skip
-            state.clock = float(block.time[first - 1])
+            before, state.clock = state.clock, float(block.time[first - 1])
+            if doubt is not None:
+                b.stray(doubt, state.clock - before)
             if self.tape is not None and b.memory[at.COV_DT] == 0.0:
                 self.tape.stepped(b)
             ticked = b.memory[at.TICK_DT] >= s.tick - at.ROUND
@@ -258,6 +276,7 @@ class Navigator:
                 b.trail.mark(state.clock, b.v_n)
             if ticked:
                 self._tick()
+                state.guessed = doubt is not None
             elif often:
                 self._row()
 
@@ -267,21 +286,24 @@ class Navigator:
         return min(last, first + int(np.searchsorted(rows, self._state.next_row - EPS)) + 1)
 
     def _gap(self, begin: float) -> None:
-        """The IMU was silent: little is known of the motion; what is constant is kept.
+        """The IMU was silent for long: little is known of the motion; what is constant is kept.
 
-        Navigation goes on in doubt of its heading, without the constraints that need one, until a
-        course is heard.
+        Navigation goes on in doubt of its heading until a course is heard; while it is doubted too much,
+        without the constraints that need one.
         """
         state = self._state
         while state.pending and state.pending[0].time <= begin:
             state.pending.pop(0)
         state.aligner = self.settings.aligner.copy()
         if state.aligned:
-            state.belief.lose_track(begin, begin - state.clock)
+            state.belief.lose_track(begin, begin - state.clock, state.lately.turning)
             for bridge in state.bridges:
                 bridge.lost()
+            for constraint in state.constraints.values():
+                constraint.lost()
             if self.tape is not None:
-                self.tape.forgot(everything=False)
+                self.tape.missed(begin - state.clock)
+        state.lately.forget()
         state.clock = begin
 
     def _tick(self) -> None:
@@ -290,8 +312,10 @@ class Navigator:
         motion = Motion(state.clock, dt, m[at.TICK_W :] / dt)
         m[at.TICK_DT :] = 0.0
         for name, constraint in state.constraints.items():
+            if state.guessed and constraint.needs_samples:
+                continue
             observation = constraint.tick(state.belief, motion)
-            if observation is None or (state.aligner is not None and constraint.needs_heading):
+            if observation is None or (constraint.needs_heading and not state.headed):
                 continue
             if self._update(name, motion.time, observation):
                 state.heard[name] = motion.time

@@ -13,14 +13,18 @@ from gapless.filters.adaptation.base import Adaptation
 from gapless.filters.consider import Wander
 from gapless.fold.manner import Manner
 from gapless.inertial.belief import Belief
+from gapless.inertial.lately import Lately
 from gapless.measurements.base import Constraint
 from gapless.trip.events import Event, ImuBlock, Reading
 from gapless.trip.recording import Array
+from gapless.units import DEG
 
 LASTS: Final = 1.6
 """A fix or a bridge's word holds for so long [s]: a second, and what a receiver at 1 Hz may be late."""
 SOON: Final = 60.0
 """A filter that fixes put right does not go far astray again within this time [s]."""
+DOUBTED: Final = 45.0 * DEG
+"""Beyond such a doubt of the heading, as a long hole of the IMU leaves, constraints that need one rest."""
 REACH: Final = 0.5
 """So much longer than `lateness` is the last part of a long block [s]."""
 
@@ -62,6 +66,10 @@ class State:
         When positions found the filter far off, lately [s].
     lost : bool
         Whether nothing of what was estimated is believed: the next start begins anew.
+    lately : Lately
+        What the IMU felt before the last sample, for a hole.
+    guessed : bool
+        Whether the present tick holds samples that bridge a hole.
     """
 
     belief: Belief
@@ -81,6 +89,8 @@ class State:
     fade: float = 1.0
     astray: tuple[float, ...] = ()
     lost: bool = False
+    lately: Lately = field(default_factory=Lately)
+    guessed: bool = False
 
     @property
     def source(self) -> str:
@@ -93,6 +103,11 @@ class State:
         if any(now - heard.get(name, -math.inf) < 1.0 for name in (*self.constraints, "odometer")):
             return "constraints"
         return "ins"
+
+    @property
+    def headed(self) -> bool:
+        """Whether the heading is known well enough for constraints that need one."""
+        return self.aligner is None or (not self.lost and self.belief.sd_heading < DOUBTED)
 
     @property
     def misled(self) -> bool:
@@ -124,6 +139,8 @@ class State:
             self.fade,
             self.astray,
             self.lost,
+            self.lately.copy(),
+            self.guessed,
         )
 
     def expect(self, readings: tuple[Reading, ...]) -> None:

@@ -16,6 +16,10 @@ from gapless.trip.recording import Array
 from gapless.units import DEG
 
 CORE_STATES: Final = 15
+MOST_TURNED: Final = 100.0 * DEG
+"""A heading that is no longer known has this standard deviation."""
+TILTED: Final = 3.0 * DEG
+"""Roll and pitch may have changed by this in a long silence: ramps and hills."""
 SECONDS: Final = 5.0
 """In which a tilt shows in the velocity, for `Belief.doubt`."""
 
@@ -175,8 +179,39 @@ class Belief:
             p[8, 8] += p[yaw, yaw]
             p[8, yaw] = p[yaw, 8] = -p[yaw, yaw]
 
-    def lose_track(self, time: float, silence: float) -> None:
-        """Carry on after a silence of the IMU: a car's speed, braking and turning bound what happened.
+    def stray(self, doubt: Array, seconds: float) -> None:
+        """Doubt what was guessed of the motion over some time: a car goes where it points.
+
+        A turn that was missed has turned the velocity too, and so is no news to a constraint that
+        compares the two. What the lateral and vertical force tell of it is taken out of their doubt.
+
+        Parameters
+        ----------
+        doubt : ndarray, shape (6,)
+            As in `Filling`.
+        seconds : float
+            For how long.
+        """
+        c, (turns, gains) = self.C_nb, seconds * doubt.reshape(2, 3)
+        v = c.T @ self.v_n
+        swept = turns @ np.square(np.cross(np.eye(3), v))
+        gains = np.maximum(gains - swept, 0.1 * gains)
+        spread = np.zeros((6, 6))
+        spread[:3, :3] = np.cross(c.T, self.v_n).T * np.sqrt(turns)
+        spread[3:, :3] = c * np.sqrt(turns)
+        spread[:3, 3:] = c * np.sqrt(gains)
+        self._spread(spread, seconds)
+
+    def _spread(self, spread: Array, seconds: float) -> None:
+        """Add errors of velocity and attitude, shape (6, k), that grew over some time to the present."""
+        whole = np.vstack([0.5 * seconds * spread[:3], spread])
+        p = self.p.reshape(ROW, ROW)
+        p[:9, :9] += whole @ whole.T
+
+    def lose_track(self, time: float, silence: float, turning: float) -> None:
+        """Carry on after a long silence of the IMU: what a car may have done meanwhile bounds the doubt.
+
+        It went on as it drove, its velocity turned with its nose.
 
         Parameters
         ----------
@@ -184,15 +219,25 @@ class Belief:
             When samples come again [s].
         silence : float
             How long there were none [s].
+        turning : float
+            Rate at which its heading may have changed all the while [rad/s].
         """
         r_m, r_n = earth.radii(np.sin(self.x[0]))
         self.x[0] += self.x[3] * silence / r_m
         self.x[1] += self.x[4] * silence / (r_n * np.cos(self.x[0]))
         self.memory[:] = 0.0
         self.memory[at.TIME] = time
-        self.set_sd("position", np.array([10.0, 10.0, 1.0]) * silence)
-        self.set_sd("velocity", np.array([1.0, 1.0, 0.1]) * min(3.0 * silence, 15.0))
-        self.set_sd("attitude", np.array([3.0, 3.0, min(15.0 * silence, 100.0)]) * DEG)
+        p = self.p.reshape(ROW, ROW)
+        p[:3] += silence * p[3:6]
+        p[:, :3] += silence * p[:, 3:6]
+        self.error[:3] += silence * self.error[3:6]
+        turned = min(turning * silence, MOST_TURNED)
+        spread = np.zeros((6, 6))
+        spread[:3, 0] = np.cross([0.0, 0.0, min(turned, 1.0)], self.v_n)
+        spread[5, 0] = turned
+        spread[:3, 1:4] = np.diag([1.0, 1.0, 0.1]) * min(3.0 * silence, 15.0)
+        spread[3:5, 4:6] = np.eye(2) * TILTED
+        self._spread(spread, silence)
         self.trail = Trail(self.trail.length)
 
     def doubt(self, off: float, ceiling: Array) -> None:
@@ -212,6 +257,11 @@ class Belief:
         for name in ("gyro_bias", "accel_bias"):
             index = np.arange(blocks[name].start, blocks[name].stop)
             p[index, index] += 0.1 * ceiling[index]
+
+    @property
+    def sd_heading(self) -> float:
+        """Standard deviation of the attitude about the vertical [rad]."""
+        return float(np.sqrt(self.p[8 * ROW + 8]))
 
     def estimate(self) -> Array:
         """The best state: nominal, with the open-loop error applied to a copy of it.

@@ -208,6 +208,7 @@ class Stillness(Constraint):
     lasted: float = 0.0
     last: float = -math.inf
     needs_heading: ClassVar[bool] = False
+    needs_samples: ClassVar[bool] = True
     parameters: ClassVar[tuple[str, ...]] = ("sd", "sd_rate", "odds", "hold")
 
     def hear(self, reading: Reading) -> None:
@@ -264,6 +265,10 @@ class Stillness(Constraint):
             return None
         self.last = motion.time
         return Observation(*zero_velocity(x, belief.layout.n, motion.rate, self.sd, self.sd_rate))
+
+    def lost(self) -> None:
+        """Begin a new window; see `Constraint.lost`."""
+        self.filled, self.lasted = 0, 0.0
 
     def _known(self, time: float) -> bool:
         """Both classes have been seen, and a fresh GNSS speed does not contradict."""
