@@ -233,6 +233,7 @@ class Navigator:
             constraint.lost()
         self._state.guessed = True
         self._go(filling.block, filling.doubt)
+        self._state.belief.tilt(filling.tilt)
 
     def _go(self, stretch: ImuBlock, doubt: Array | None = None) -> None:
         """Run through samples without a hole; `doubt` of those that are guessed."""

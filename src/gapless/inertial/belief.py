@@ -183,24 +183,35 @@ class Belief:
         """Doubt what was guessed of the motion over some time: a car goes where it points.
 
         A turn that was missed has turned the velocity too, and so is no news to a constraint that
-        compares the two. What the lateral and vertical force tell of it is taken out of their doubt.
+        compares the two. What the lateral force tells of it is taken out of its doubt.
 
         Parameters
         ----------
-        doubt : ndarray, shape (6,)
+        doubt : ndarray, shape (4,)
             As in `Filling`.
         seconds : float
             For how long.
         """
-        c, (turns, gains) = self.C_nb, seconds * doubt.reshape(2, 3)
-        v = c.T @ self.v_n
-        swept = turns @ np.square(np.cross(np.eye(3), v))
+        c, turn, gains = self.C_nb, seconds * doubt[0], seconds * doubt[1:]
+        swept = turn * np.square(np.cross([0.0, 0.0, 1.0], c.T @ self.v_n))
         gains = np.maximum(gains - swept, 0.1 * gains)
-        spread = np.zeros((6, 6))
-        spread[:3, :3] = np.cross(c.T, self.v_n).T * np.sqrt(turns)
-        spread[3:, :3] = c * np.sqrt(turns)
-        spread[:3, 3:] = c * np.sqrt(gains)
+        spread = np.zeros((6, 4))
+        spread[:3, 0] = np.cross(c[:, 2], self.v_n) * np.sqrt(turn)
+        spread[3:, 0] = c[:, 2] * np.sqrt(turn)
+        spread[:3, 1:] = c * np.sqrt(gains)
         self._spread(spread, seconds)
+
+    def tilt(self, doubt: Array) -> None:
+        """Doubt roll and pitch.
+
+        Parameters
+        ----------
+        doubt : ndarray, shape (2,)
+            Variances about the forward and the right axis [rad^2].
+        """
+        spread = np.zeros((6, 2))
+        spread[3:] = self.C_nb[:, :2] * np.sqrt(doubt)
+        self._spread(spread, 0.0)
 
     def _spread(self, spread: Array, seconds: float) -> None:
         """Add errors of velocity and attitude, shape (6, k), that grew over some time to the present."""

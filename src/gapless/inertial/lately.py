@@ -29,10 +29,10 @@ KEPT: Final = SPANS[-1] + 2
 """Means that are kept."""
 MEMORY: Final = 1200.0
 """Tenths over which a mean square forgets: two minutes."""
-BUDGET: Final = np.array([1.0 * DEG, 1.0 * DEG, 3.0 * DEG, 0.5, 0.4, 0.3])
+BUDGET: Final = np.array([0.8 * DEG, 0.8 * DEG, 2.0 * DEG, 0.4, 0.4, 0.25])
 """What a line over one second misses before anything was learned: angles [rad], velocities [m/s]; in
-proportion to the square of the time."""
-PRIOR: Final = 100.0
+proportion to the time to the power of 1.5."""
+PRIOR: Final = 50.0
 """For how many tenths that counts."""
 LEAST: Final = 0.1
 """Never less than this share of it: after minutes at rest a car may drive off in a hole."""
@@ -51,12 +51,17 @@ class Filling(NamedTuple):
     ----------
     block : ImuBlock
         Samples in it.
-    doubt : ndarray, shape (6,)
-        Variances a second of what they say: of the angles [rad^2/s], of the velocity [m^2/s^3], in b.
+    doubt : ndarray, shape (4,)
+        Variances a second of what they say: of the angle about the down axis of b [rad^2/s], of the
+        velocity in b [m^2/s^3].
+    tilt : ndarray, shape (2,)
+        Variances of roll and pitch at the end [rad^2]. What tilts a car shows in the forces too, whose
+        doubt holds it; through the way there it would count twice.
     """
 
     block: ImuBlock
     doubt: Array
+    tilt: Array
 
 
 class Lately:
@@ -76,7 +81,7 @@ class Lately:
         self._counts = np.zeros(2)
         self._learned = np.zeros((_TURN + 1, 6))
         seconds = TENTH * np.array(SPANS)[:, None]
-        self._learned[_MISS:_SCATTER] = np.square(BUDGET * seconds**2)
+        self._learned[_MISS:_SCATTER] = np.square(BUDGET * seconds**1.5)
         self._learned[_CHANGE:_MISS] = 12.0 * self._learned[_MISS:_SCATTER] / seconds**2
         self._learned[_TURN] = TURN[1] ** 2
 
@@ -125,7 +130,7 @@ class Lately:
         time[-1] = end
         block = ImuBlock(time, np.full(n, silent / n), felt[:, :3].copy(), felt[:, 3:].copy())
         self.forget()
-        return Filling(block, missed / silent)
+        return Filling(block, missed[2:] / silent, missed[:2])
 
     def forget(self) -> None:
         """What was felt does not lead up to what follows."""
@@ -159,7 +164,7 @@ class Lately:
         return new
 
 
-_BUDGETS: Final = np.square(LEAST * BUDGET * (TENTH * np.array(SPANS)[:, None]) ** 2)
+_BUDGETS: Final = np.square(LEAST * BUDGET * (TENTH * np.array(SPANS)[:, None]) ** 1.5)
 
 
 @kernel
