@@ -204,6 +204,7 @@ class Navigator:
             if start is not None or not state.aligned:
                 return
         observation = self.settings.sensors[reading.channel].observe(state.belief, reading)
+        state.face(observation)
         used = self._update(reading.channel, reading.time, observation)
         if used:
             state.heard[reading.channel] = reading.time
@@ -289,15 +290,15 @@ class Navigator:
     def _gap(self, begin: float) -> None:
         """The IMU was silent for long: little is known of the motion; what is constant is kept.
 
-        Navigation goes on in doubt of its heading until a course is heard; while it is doubted too much,
-        without the constraints that need one.
+        Navigation goes on in doubt of its heading, which is set aside while nothing is heard that has a
+        direction. Then, until a course is heard, constraints that need one rest.
         """
         state = self._state
         while state.pending and state.pending[0].time <= begin:
             state.pending.pop(0)
         state.aligner = self.settings.aligner.copy()
         if state.aligned:
-            state.belief.lose_track(begin, begin - state.clock, state.lately.turning)
+            state.lose_track(begin)
             for bridge in state.bridges:
                 bridge.lost()
             for constraint in state.constraints.values():
@@ -324,8 +325,10 @@ class Navigator:
             heeded = k in state.manner.voices
             if heeded or self.keeps_learning:
                 for channel, said in bridge.tick(state.belief, motion):
-                    if heeded and self._update(channel, motion.time, said):
-                        state.heard["bridge"] = motion.time
+                    if heeded:
+                        state.face(said)
+                        if self._update(channel, motion.time, said):
+                            state.heard["bridge"] = motion.time
         self._row()
 
     def _row(self) -> None:
@@ -336,7 +339,7 @@ class Navigator:
             source, shared = state.source, state.wander.response
             if source != "gnss" and state.manner.scale != 1.0:
                 shared = shared + (state.manner.scale - 1.0) * state.belief.P[:3, :3]
-            row = state.clock, state.belief, shared, source
+            row = state.clock, state.stated, shared, source
             self.journal.row(*row)
             if self.tape is not None:
                 self.tape.row(*row)

@@ -5,7 +5,9 @@ from __future__ import annotations
 import bisect
 import math
 from dataclasses import dataclass, field
-from typing import Final
+from typing import Final, NamedTuple
+
+import numpy as np
 
 from gapless.alignment.coarse import Aligner
 from gapless.bridges.base import Bridge
@@ -14,7 +16,7 @@ from gapless.filters.consider import Wander
 from gapless.fold.manner import Manner
 from gapless.inertial.belief import Belief
 from gapless.inertial.lately import Lately
-from gapless.measurements.base import Constraint
+from gapless.measurements.base import Constraint, Observation
 from gapless.trip.events import Event, ImuBlock, Reading
 from gapless.trip.recording import Array
 from gapless.units import DEG
@@ -23,10 +25,35 @@ LASTS: Final = 1.6
 """A fix or a bridge's word holds for so long [s]: a second, and what a receiver at 1 Hz may be late."""
 SOON: Final = 60.0
 """A filter that fixes put right does not go far astray again within this time [s]."""
-DOUBTED: Final = 45.0 * DEG
-"""Beyond such a doubt of the heading, as a long hole of the IMU leaves, constraints that need one rest."""
+UNKNOWN: Final = 100.0 * DEG
+"""Standard deviation of a heading that is no longer known."""
+ASIDE: Final = 1e-6
+"""An observation that sees less than this share of its own variance has no direction."""
 REACH: Final = 0.5
 """So much longer than `lateness` is the last part of a long block [s]."""
+
+
+class Turned(NamedTuple):
+    """A turn that nobody saw, in a long hole of the IMU: the way since may be turned about its place.
+
+    Neither the strapdown nor what a car cannot do tells of it, for they are the same in any direction. A
+    linear filter that is asked to carry it learns of it all the same, from every change of speed, and is
+    sure of a wrong heading. So it is set aside until something is heard that has a direction.
+
+    Parameters
+    ----------
+    place : ndarray, shape (3,)
+        Latitude, longitude [rad], height [m].
+    variance : float
+        Of the angle [rad^2].
+    """
+
+    place: Array
+    variance: float
+
+    def after(self, sd: float) -> Turned:
+        """With one more: about the first place, for that is farther."""
+        return Turned(self.place, min(self.variance + sd * sd, UNKNOWN**2))
 
 
 @dataclass
@@ -70,6 +97,8 @@ class State:
         What the IMU felt before the last sample, for a hole.
     guessed : bool
         Whether the present tick holds samples that bridge a hole.
+    turned : Turned or None
+        What the belief leaves out of its doubt.
     """
 
     belief: Belief
@@ -91,6 +120,7 @@ class State:
     lost: bool = False
     lately: Lately = field(default_factory=Lately)
     guessed: bool = False
+    turned: Turned | None = None
 
     @property
     def source(self) -> str:
@@ -106,8 +136,44 @@ class State:
 
     @property
     def headed(self) -> bool:
-        """Whether the heading is known well enough for constraints that need one."""
-        return self.aligner is None or (not self.lost and self.belief.sd_heading < DOUBTED)
+        """Whether the belief's heading is one that constraints which need one may count on."""
+        return self.aligner is None or (self.turned is not None and not self.lost)
+
+    @property
+    def stated(self) -> Belief:
+        """The belief with all of its doubt (a copy where some was set aside)."""
+        if self.turned is None:
+            return self.belief
+        whole = self.belief.copy()
+        whole.turn(*self.turned)
+        return whole
+
+    def lose_track(self, begin: float) -> None:
+        """Carry the belief over a long hole of the IMU.
+
+        Parameters
+        ----------
+        begin : float
+            When samples come again [s].
+        """
+        silence, place = begin - self.clock, self.belief.lla.copy()
+        sd = min(self.lately.turning * silence, UNKNOWN)
+        self.belief.lose_track(begin, silence, sd)
+        place = 0.5 * (place + self.belief.lla)
+        self.turned = Turned(place, sd * sd) if self.turned is None else self.turned.after(sd)
+
+    def face(self, o: Observation) -> None:
+        """Take the doubt that was set aside back into the belief, if an observation has a direction.
+
+        Parameters
+        ----------
+        o : Observation
+        """
+        if self.turned is not None:
+            seen = np.square(o.H[:, :9] @ self.belief.turned_about(self.turned.place)) * self.turned.variance
+            if (seen > ASIDE * o.R.diagonal()).any():
+                self.belief.turn(*self.turned)
+                self.turned = None
 
     @property
     def misled(self) -> bool:
@@ -141,6 +207,7 @@ class State:
             self.lost,
             self.lately.copy(),
             self.guessed,
+            self.turned,
         )
 
     def expect(self, readings: tuple[Reading, ...]) -> None:

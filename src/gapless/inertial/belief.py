@@ -16,8 +16,6 @@ from gapless.trip.recording import Array
 from gapless.units import DEG
 
 CORE_STATES: Final = 15
-MOST_TURNED: Final = 100.0 * DEG
-"""A heading that is no longer known has this standard deviation."""
 TILTED: Final = 3.0 * DEG
 """Roll and pitch may have changed by this in a long silence: ramps and hills."""
 SECONDS: Final = 5.0
@@ -214,15 +212,17 @@ class Belief:
         self._spread(spread, 0.0)
 
     def _spread(self, spread: Array, seconds: float) -> None:
-        """Add errors of velocity and attitude, shape (6, k), that grew over some time to the present."""
+        """Add errors of velocity and attitude, shape (6, k), that grew at random over some time till now."""
         whole = np.vstack([0.5 * seconds * spread[:3], spread])
         p = self.p.reshape(ROW, ROW)
         p[:9, :9] += whole @ whole.T
+        p[:3, :3] += seconds * seconds / 12.0 * spread[:3] @ spread[:3].T
 
-    def lose_track(self, time: float, silence: float, turning: float) -> None:
+    def lose_track(self, time: float, silence: float, turned: float) -> None:
         """Carry on after a long silence of the IMU: what a car may have done meanwhile bounds the doubt.
 
-        It went on as it drove, its velocity turned with its nose.
+        It went straight on, faster or slower. That it may have turned is for the caller to `turn`, but for
+        where in the hole it did.
 
         Parameters
         ----------
@@ -230,8 +230,8 @@ class Belief:
             When samples come again [s].
         silence : float
             How long there were none [s].
-        turning : float
-            Rate at which its heading may have changed all the while [rad/s].
+        turned : float
+            Standard deviation of the heading's change [rad].
         """
         r_m, r_n = earth.radii(np.sin(self.x[0]))
         self.x[0] += self.x[3] * silence / r_m
@@ -242,14 +242,42 @@ class Belief:
         p[:3] += silence * p[3:6]
         p[:, :3] += silence * p[:, 3:6]
         self.error[:3] += silence * self.error[3:6]
-        turned = min(turning * silence, MOST_TURNED)
-        spread = np.zeros((6, 6))
-        spread[:3, 0] = np.cross([0.0, 0.0, min(turned, 1.0)], self.v_n)
-        spread[5, 0] = turned
-        spread[:3, 1:4] = np.diag([1.0, 1.0, 0.1]) * min(3.0 * silence, 15.0)
-        spread[3:5, 4:6] = np.eye(2) * TILTED
+        spread = np.zeros((6, 5))
+        spread[:3, :3] = self.C_nb * np.array([1.0, 0.1, 0.1]) * min(3.0 * silence, 15.0)
+        spread[3:5, 3:5] = np.eye(2) * TILTED
         self._spread(spread, silence)
+        aside = silence / np.sqrt(12.0) * min(turned, 1.0) * np.cross([0.0, 0.0, 1.0], self.v_n)
+        p[:3, :3] += np.outer(aside, aside)
         self.trail = Trail(self.trail.length)
+
+    def turn(self, place: Array, variance: float) -> None:
+        """Doubt the heading since some place: the way from there may be turned about it as a whole.
+
+        Parameters
+        ----------
+        place : ndarray, shape (3,)
+            Latitude, longitude [rad], height [m].
+        variance : float
+            [rad^2]
+        """
+        p, turned = self.p.reshape(ROW, ROW), self.turned_about(place)
+        p[:9, :9] += variance * np.outer(turned, turned)
+
+    def turned_about(self, place: Array) -> Array:
+        """What a turn of the way since some place does to position, velocity and attitude.
+
+        Parameters
+        ----------
+        place : ndarray, shape (3,)
+
+        Returns
+        -------
+        ndarray, shape (9,)
+            Errors by the angle [1/rad].
+        """
+        down = np.array([0.0, 0.0, 1.0])
+        way = earth.lla_to_ned(self.lla, place)
+        return np.concatenate([np.cross(down, way), np.cross(down, self.v_n), down])
 
     def doubt(self, off: float, ceiling: Array) -> None:
         """Doubt what a bridge that misled the filter taught it: attitude and the biases of the sensors.
@@ -268,11 +296,6 @@ class Belief:
         for name in ("gyro_bias", "accel_bias"):
             index = np.arange(blocks[name].start, blocks[name].stop)
             p[index, index] += 0.1 * ceiling[index]
-
-    @property
-    def sd_heading(self) -> float:
-        """Standard deviation of the attitude about the vertical [rad]."""
-        return float(np.sqrt(self.p[8 * ROW + 8]))
 
     def estimate(self) -> Array:
         """The best state: nominal, with the open-loop error applied to a copy of it.
