@@ -25,7 +25,7 @@ def stops(feed, times):
     [("late", "feedback"), ("exact", "feedback"), ("early", "feedback"), ("late", "feedforward")],
 )
 def test_resume(clock, correction):
-    """Cut before alignment, between a fix and what it waits for, in an outage, in and after a hole, in a stop."""
+    """Cut before alignment, between a fix and what it waits for, in an outage, at a hole, in a stop."""
     log = recording(clock, 1.0)
     setup = prepared(log, clock, System(filter=Filter(correction=correction)))
     feed = list(events(log, CLOCKS[clock]))
