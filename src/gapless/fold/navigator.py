@@ -21,6 +21,7 @@ from gapless.inertial.belief import Belief, inject
 from gapless.inertial.cubature import propagate_points
 from gapless.inertial.lately import Filling
 from gapless.inertial.pieces import parted, pieces, without_holes
+from gapless.inertial.unseen import stray, tilt
 from gapless.measurements.base import Observation
 from gapless.trip.events import EPS, GAP, Event, ImuBlock, Motion, Reading
 from gapless.trip.recording import Array
@@ -234,7 +235,7 @@ class Navigator:
             constraint.lost()
         self._state.guessed = True
         self._go(filling.block, filling.doubt)
-        self._state.belief.tilt(filling.tilt)
+        tilt(self._state.belief, filling.tilt)
 
     def _go(self, stretch: ImuBlock, doubt: Array | None = None) -> None:
         """Run through samples without a hole; `doubt` of those that are guessed."""
@@ -270,7 +271,7 @@ class Navigator:
             )  # fmt: skip
             before, state.clock = state.clock, float(block.time[first - 1])
             if doubt is not None:
-                b.stray(doubt, state.clock - before)
+                stray(b, doubt, state.clock - before)
             if self.tape is not None and b.memory[at.COV_DT] == 0.0:
                 self.tape.stepped(b)
             ticked = b.memory[at.TICK_DT] >= s.tick - at.ROUND

@@ -5,7 +5,7 @@ from __future__ import annotations
 import bisect
 import math
 from dataclasses import dataclass, field
-from typing import Final, NamedTuple
+from typing import Final
 
 import numpy as np
 
@@ -16,44 +16,19 @@ from gapless.filters.consider import Wander
 from gapless.fold.manner import Manner
 from gapless.inertial.belief import Belief
 from gapless.inertial.lately import Lately
+from gapless.inertial.unseen import UNKNOWN, Turned, lose_track, turn, turned_about
 from gapless.measurements.base import Constraint, Observation
 from gapless.trip.events import Event, ImuBlock, Reading
 from gapless.trip.recording import Array
-from gapless.units import DEG
 
 LASTS: Final = 1.6
 """A fix or a bridge's word holds for so long [s]: a second, and what a receiver at 1 Hz may be late."""
 SOON: Final = 60.0
 """A filter that fixes put right does not go far astray again within this time [s]."""
-UNKNOWN: Final = 100.0 * DEG
-"""Standard deviation of a heading that is no longer known."""
 ASIDE: Final = 1e-6
 """An observation that sees less than this share of its own variance has no direction."""
 REACH: Final = 0.5
 """So much longer than `lateness` is the last part of a long block [s]."""
-
-
-class Turned(NamedTuple):
-    """A turn that nobody saw, in a long hole of the IMU: the way since may be turned about its place.
-
-    Neither the strapdown nor what a car cannot do tells of it, for they are the same in any direction. A
-    linear filter that is asked to carry it learns of it all the same, from every change of speed, and is
-    sure of a wrong heading. So it is set aside until something is heard that has a direction.
-
-    Parameters
-    ----------
-    place : ndarray, shape (3,)
-        Latitude, longitude [rad], height [m].
-    variance : float
-        Of the angle [rad^2].
-    """
-
-    place: Array
-    variance: float
-
-    def after(self, sd: float) -> Turned:
-        """With one more: about the first place, for that is farther."""
-        return Turned(self.place, min(self.variance + sd * sd, UNKNOWN**2))
 
 
 @dataclass
@@ -145,7 +120,7 @@ class State:
         if self.turned is None:
             return self.belief
         whole = self.belief.copy()
-        whole.turn(*self.turned)
+        turn(whole, *self.turned)
         return whole
 
     def lose_track(self, begin: float) -> None:
@@ -158,7 +133,7 @@ class State:
         """
         silence, place = begin - self.clock, self.belief.lla.copy()
         sd = min(self.lately.turning * silence, UNKNOWN)
-        self.belief.lose_track(begin, silence, sd)
+        lose_track(self.belief, begin, silence, sd)
         place = 0.5 * (place + self.belief.lla)
         self.turned = Turned(place, sd * sd) if self.turned is None else self.turned.after(sd)
 
@@ -170,9 +145,9 @@ class State:
         o : Observation
         """
         if self.turned is not None:
-            seen = np.square(o.H[:, :9] @ self.belief.turned_about(self.turned.place)) * self.turned.variance
+            seen = np.square(o.H[:, :9] @ turned_about(self.belief, self.turned.place)) * self.turned.variance
             if (seen > ASIDE * o.R.diagonal()).any():
-                self.belief.turn(*self.turned)
+                turn(self.belief, *self.turned)
                 self.turned = None
 
     @property

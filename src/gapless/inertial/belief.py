@@ -13,11 +13,8 @@ from gapless.inertial import propagate as at
 from gapless.inertial.layout import ROW, Layout
 from gapless.inertial.trail import Trail
 from gapless.trip.recording import Array
-from gapless.units import DEG
 
 CORE_STATES: Final = 15
-TILTED: Final = 3.0 * DEG
-"""Roll and pitch may have changed by this in a long silence: ramps and hills."""
 SECONDS: Final = 5.0
 """In which a tilt shows in the velocity, for `Belief.doubt`."""
 
@@ -176,108 +173,6 @@ class Belief:
             yaw = self.layout.blocks["mounting"].start + 1
             p[8, 8] += p[yaw, yaw]
             p[8, yaw] = p[yaw, 8] = -p[yaw, yaw]
-
-    def stray(self, doubt: Array, seconds: float) -> None:
-        """Doubt what was guessed of the motion over some time: a car goes where it points.
-
-        A turn that was missed has turned the velocity too, and so is no news to a constraint that
-        compares the two. What the lateral force tells of it is taken out of its doubt.
-
-        Parameters
-        ----------
-        doubt : ndarray, shape (4,)
-            As in `Filling`.
-        seconds : float
-            For how long.
-        """
-        c, turn, gains = self.C_nb, seconds * doubt[0], seconds * doubt[1:]
-        swept = turn * np.square(np.cross([0.0, 0.0, 1.0], c.T @ self.v_n))
-        gains = np.maximum(gains - swept, 0.1 * gains)
-        spread = np.zeros((6, 4))
-        spread[:3, 0] = np.cross(c[:, 2], self.v_n) * np.sqrt(turn)
-        spread[3:, 0] = c[:, 2] * np.sqrt(turn)
-        spread[:3, 1:] = c * np.sqrt(gains)
-        self._spread(spread, seconds)
-
-    def tilt(self, doubt: Array) -> None:
-        """Doubt roll and pitch.
-
-        Parameters
-        ----------
-        doubt : ndarray, shape (2,)
-            Variances about the forward and the right axis [rad^2].
-        """
-        spread = np.zeros((6, 2))
-        spread[3:] = self.C_nb[:, :2] * np.sqrt(doubt)
-        self._spread(spread, 0.0)
-
-    def _spread(self, spread: Array, seconds: float) -> None:
-        """Add errors of velocity and attitude, shape (6, k), that grew at random over some time till now."""
-        whole = np.vstack([0.5 * seconds * spread[:3], spread])
-        p = self.p.reshape(ROW, ROW)
-        p[:9, :9] += whole @ whole.T
-        p[:3, :3] += seconds * seconds / 12.0 * spread[:3] @ spread[:3].T
-
-    def lose_track(self, time: float, silence: float, turned: float) -> None:
-        """Carry on after a long silence of the IMU: what a car may have done meanwhile bounds the doubt.
-
-        It went straight on, faster or slower. That it may have turned is for the caller to `turn`, but for
-        where in the hole it did.
-
-        Parameters
-        ----------
-        time : float
-            When samples come again [s].
-        silence : float
-            How long there were none [s].
-        turned : float
-            Standard deviation of the heading's change [rad].
-        """
-        r_m, r_n = earth.radii(np.sin(self.x[0]))
-        self.x[0] += self.x[3] * silence / r_m
-        self.x[1] += self.x[4] * silence / (r_n * np.cos(self.x[0]))
-        self.memory[:] = 0.0
-        self.memory[at.TIME] = time
-        p = self.p.reshape(ROW, ROW)
-        p[:3] += silence * p[3:6]
-        p[:, :3] += silence * p[:, 3:6]
-        self.error[:3] += silence * self.error[3:6]
-        spread = np.zeros((6, 5))
-        spread[:3, :3] = self.C_nb * np.array([1.0, 0.1, 0.1]) * min(3.0 * silence, 15.0)
-        spread[3:5, 3:5] = np.eye(2) * TILTED
-        self._spread(spread, silence)
-        aside = silence / np.sqrt(12.0) * min(turned, 1.0) * np.cross([0.0, 0.0, 1.0], self.v_n)
-        p[:3, :3] += np.outer(aside, aside)
-        self.trail = Trail(self.trail.length)
-
-    def turn(self, place: Array, variance: float) -> None:
-        """Doubt the heading since some place: the way from there may be turned about it as a whole.
-
-        Parameters
-        ----------
-        place : ndarray, shape (3,)
-            Latitude, longitude [rad], height [m].
-        variance : float
-            [rad^2]
-        """
-        p, turned = self.p.reshape(ROW, ROW), self.turned_about(place)
-        p[:9, :9] += variance * np.outer(turned, turned)
-
-    def turned_about(self, place: Array) -> Array:
-        """What a turn of the way since some place does to position, velocity and attitude.
-
-        Parameters
-        ----------
-        place : ndarray, shape (3,)
-
-        Returns
-        -------
-        ndarray, shape (9,)
-            Errors by the angle [1/rad].
-        """
-        down = np.array([0.0, 0.0, 1.0])
-        way = earth.lla_to_ned(self.lla, place)
-        return np.concatenate([np.cross(down, way), np.cross(down, self.v_n), down])
 
     def doubt(self, off: float, ceiling: Array) -> None:
         """Doubt what a bridge that misled the filter taught it: attitude and the biases of the sensors.
