@@ -40,7 +40,17 @@ FAST = {"reassoc", "contract", "arcp", "nsz"}
 
 
 _FILES = ("_numba", "units", "earth", "attitude")
-_WITH = ("trip", "filters", "inertial", "sensors", "measurements", "denoise", "bridges", "learners")
+_WITH = (
+    "trip",
+    "filters",
+    "inertial",
+    "sensors",
+    "measurements",
+    "denoise",
+    "bridges",
+    "learners",
+    "witnesses",
+)
 _ROOMS = (*(f"{name}.py" for name in _FILES), *_WITH)
 """Modules that hold kernels, and all that those may import (the floors keep it so)."""
 _KEPT = 30.0 * 86400.0

@@ -28,17 +28,21 @@ CLOCKS = {
 """What is added to each sensor's stamps; stamps that fall inside samples, and on them."""
 OUTAGE, SILENCE = (72.0, 92.0), (127.0, 144.0)
 """Without GNSS; without IMU as well [s after the start]."""
+HOLES = ((66.4, 66.7), (84.0, 85.5), (110.0, 112.0))
+"""Without IMU for so short that it is bridged: between fixes, in the outage, over fixes [s]."""
 MOUNTING = (np.array([0.03, -0.05]), np.array([0.02, 0.02]))
 
 
 @cache
 def recording(clock: str, rate: float, seed: int = 6, duration: float = 165.0) -> Recording:
-    """An urban drive with an outage, a hole in the IMU's log, and sensors on clocks of their own."""
+    """An urban drive with an outage, holes in the IMU's log, and sensors on clocks of their own."""
     late = CLOCKS[clock]
     receiver = Receiver(rate=rate, position_delay=-late["position"], velocity_delay=-late["velocity"])
     wheels = WheelSensor(rate=5.0, delay=-late.get("odometer", 0.0), scale=0.01)
     log = simulate("urban", "consumer", duration, seed, vehicle=CAR, receiver=receiver, wheels=wheels)
-    logged = (log.imu.time < SILENCE[0]) | (log.imu.time >= SILENCE[1])
+    logged = np.ones(len(log.imu), bool)
+    for begin, end in (SILENCE, *HOLES):
+        logged &= (log.imu.time < begin) | (log.imu.time >= end)
     gnss = withhold(log.gnss, [Outage(*OUTAGE)], 0.0)
     return replace(log, imu=log.imu.take(logged), gnss=gnss)
 

@@ -4,15 +4,17 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from folding import OUTAGE, SILENCE, heard, prepared, recording, rows, run
+from folding import HOLES, OUTAGE, SILENCE, heard, prepared, recording, rows, run
 
 from gapless.runs.fuse import fuse
 from gapless.scenarios import Outage
 from gapless.simulate import spikes
 from gapless.systems.recipe import Clock, Mounting, System
 
-CUTS = (30.0, 60.0, 70.05, OUTAGE[0] + 8.004, OUTAGE[1] + 0.35, SILENCE[0] + 5.0, SILENCE[1] + 12.0)
-"""Before alignment, driving, between and just after fixes, in an outage, in a hole, aligned again."""
+CUTS = (30.0, 60.0, 70.05, OUTAGE[0] + 8.004, HOLES[1][0] + 0.7, HOLES[1][1] + 0.02, OUTAGE[1] + 0.35)
+CUTS += (HOLES[2][0] + 1.3, HOLES[2][1] + 0.004, SILENCE[0] + 5.0, SILENCE[1] + 12.0)
+"""Before alignment, driving, between and just after fixes, in an outage, in holes that are bridged and at
+the samples that close them, in one that is not, aligned again."""
 
 
 @pytest.mark.parametrize(

@@ -5,7 +5,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from folding import CLOCKS, OUTAGE, belief, fold, heard, prepared, recording, rows, run, singles
+from folding import CLOCKS, HOLES, OUTAGE, belief, fold, heard, prepared, recording, rows, run, singles
 
 from gapless.fold.feed import events
 from gapless.fold.navigator import Navigator
@@ -25,12 +25,12 @@ def stops(feed, times):
     [("late", "feedback"), ("exact", "feedback"), ("early", "feedback"), ("late", "feedforward")],
 )
 def test_resume(clock, correction):
-    """Cut before alignment, between a fix and the samples it waits for, in an outage, in a stop."""
+    """Cut before alignment, between a fix and what it waits for, in an outage, at a hole, in a stop."""
     log = recording(clock, 1.0)
     setup = prepared(log, clock, System(filter=Filter(correction=correction)))
     feed = list(events(log, CLOCKS[clock]))
     whole = run(setup, log, clock)
-    for k in stops(feed, (33.0, OUTAGE[0] + 3.0, 110.0, 145.0)):
+    for k in stops(feed, (33.0, OUTAGE[0] + 3.0, HOLES[2][0], HOLES[2][1], 145.0)):
         navigator = fold(Navigator(setup), feed[:k])
         now, kept = belief(navigator), navigator.snapshot()
         before = rows(navigator)

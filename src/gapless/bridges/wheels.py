@@ -37,6 +37,8 @@ SURE: Final = 0.5
 """Nor are those where the filter's speed is less certain than this [m/s]."""
 RATE: Final = 25.0
 """A slower IMU hears no wheels [Hz]."""
+HOLE: Final = 0.2
+"""In a window with a larger hole no wheels are heard [s]."""
 ROOM: Final = 0.4
 """Samples and velocities are kept for so much longer than a window [s]."""
 
@@ -200,7 +202,8 @@ class Wheels:
         if found is None:
             return None
         self.rate = found.rate
-        if self.rate < RATE - 0.5 or found.gap > 0.2 or found.rows[0, 0] > time - length:
+        first, last = found.rows[0, 0], found.rows[-1, 0]
+        if self.rate < RATE - 0.5 or found.gap > HOLE or first > time - length or last < time - HOLE:
             return None
         return spectrum(found.rows, times, speeds, length, 0.5 * self.rate - 3.0)
 

@@ -13,6 +13,7 @@ from gapless.evaluation.ages import QUANTITIES, ages
 from gapless.evaluation.errors import Errors
 from gapless.evaluation.statistics import rms
 from gapless.scenarios import Outage, withheld
+from gapless.trip.events import GAP
 from gapless.trip.recording import Array, Imu
 
 BEFORE_MOTION: Final = "before motion + 30 s"
@@ -27,8 +28,6 @@ SETTLING: Final = 30.0
 """An outage that begins less than this [s] after the first motion tests the alignment instead."""
 _STANDING: Final = 1.0
 """Top speed [m/s] of an outage without motion."""
-_IMU_GAP: Final = 0.5
-"""IMU stamps further apart than this [s], and than five median intervals, are a gap."""
 
 
 @dataclass(frozen=True)
@@ -172,7 +171,7 @@ def score_outages(
     start : float
         Time of the first IMU sample [s].
     imu : Imu
-        Where its gaps are looked for.
+        Where gaps that navigation does not bridge are looked for.
     first_motion : float
         Logged GNSS time at which driving began [s].
     clock_offset : float
@@ -276,5 +275,5 @@ def _has_gap(imu: Imu, begin: float, end: float) -> bool:
     if len(imu) < 2:
         return True
     step = np.diff(imu.time)
-    gap = step > max(_IMU_GAP, 5.0 * float(np.median(step)))
+    gap = step > max(GAP, 5.0 * float(np.median(step)))
     return bool((gap & (imu.time[1:] > begin) & (imu.time[:-1] < end)).any())

@@ -47,7 +47,7 @@ def begin(start: Start, state: State, settings: Settings, journal: Journal, tape
     b.memory[at.TIME] = state.clock
     if tape is not None:
         tape.forgot(everything=first, course=True)
-    state.aligner, state.aligned = None, True
+    state.aligner, state.aligned, state.turned = None, True, None
     state.next_row = max(state.next_row, state.clock)
     journal.align(state.clock, evidence)
 

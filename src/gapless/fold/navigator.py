@@ -19,10 +19,12 @@ from gapless.fold.tape import Tape
 from gapless.inertial import propagate as at
 from gapless.inertial.belief import Belief, inject
 from gapless.inertial.cubature import propagate_points
+from gapless.inertial.lately import Filling
 from gapless.inertial.layout import ROW
-from gapless.inertial.pieces import GAP, pieces, without_holes
+from gapless.inertial.pieces import parted, pieces, without_holes
+from gapless.inertial.unseen import stray, tilt
 from gapless.measurements.base import Observation
-from gapless.trip.events import EPS, Event, ImuBlock, Motion, Reading
+from gapless.trip.events import EPS, GAP, Event, ImuBlock, Motion, Reading
 from gapless.trip.recording import Array
 from gapless.witnesses.bench import Bench
 from gapless.witnesses.jolt import Jolt
@@ -232,6 +234,7 @@ class Navigator:
             if start is not None or not state.aligned:
                 return
         observation = self._observed(reading)
+        state.face(observation)
         used = self._update(reading.channel, reading.time, observation, reading)
         if used:
             state.heard[reading.channel] = reading.time
@@ -254,19 +257,34 @@ class Navigator:
     # --- samples --------------------------------------------------------------------------------
 
     def _feel(self, block: ImuBlock) -> None:
-        """Run through samples, stopping at holes between them and wherever a reading waits."""
+        """Run through samples, bridging holes between them and stopping wherever a reading waits."""
         state = self._state
         for stretch in without_holes(block):
-            begin = float(stretch.time[0] - stretch.dt[0])
-            if begin - state.clock > GAP:
-                self._gap(begin)
-            for piece in pieces(stretch, state.pending, state.belief.memory):
-                if piece.last > piece.first:
-                    self._run(*piece)
-                if piece.due:
-                    self._apply_due()
+            silent = parted(state.clock, stretch)
+            if silent > GAP:
+                self._gap(float(stretch.time[0] - stretch.dt[0]))
+            elif silent:
+                self._bridge(state.lately.across(state.clock, stretch.rows(0, 1)))
+            self._go(stretch)
+            state.lately.feel(stretch)
 
-    def _run(self, block: ImuBlock, first: int, last: int, due: bool) -> None:
+    def _bridge(self, filling: Filling) -> None:
+        """Go through a hole by what was felt on both sides; what listens to samples is told of it."""
+        for constraint in self._state.constraints.values():
+            constraint.lost()
+        self._state.guessed = True
+        self._go(filling.block, filling.doubt)
+        tilt(self._state.belief, filling.tilt)
+
+    def _go(self, stretch: ImuBlock, doubt: Array | None = None) -> None:
+        """Run through samples without a hole; `doubt` of those that are guessed."""
+        for piece in pieces(stretch, self._state.pending, self._state.belief.memory):
+            if piece.last > piece.first:
+                self._run(*piece, doubt)
+            if piece.due:
+                self._apply_due()
+
+    def _run(self, block: ImuBlock, first: int, last: int, due: bool, doubt: Array | None) -> None:
         """Propagate samples first..last-1, ticking on the way; `due`: an observation waits there."""
         s, state = self.settings, self._state
         raw, box = block, state.box
@@ -277,7 +295,7 @@ class Navigator:
         if not state.aligned:
             state.clock = float(block.time[last - 1])
             return
-        if state.bridges and last > first:
+        if state.bridges and last > first and doubt is None:
             felt = block.rows(first, last)
             for bridge in state.bridges:
                 bridge.feel(felt)
@@ -292,7 +310,9 @@ class Navigator:
                 b.x, b.memory, s.layout.width, b.p, b.scratch, b.error, s.layout.offsets, state.noise,
                 block.time, block.dt, block.dtheta, block.dvel, first, end, s.period, s.tick, flush,
             )  # fmt: skip
-            state.clock = float(block.time[first - 1])
+            before, state.clock = state.clock, float(block.time[first - 1])
+            if doubt is not None:
+                stray(b, doubt, state.clock - before)
             if self.tape is not None and b.memory[at.COV_DT] == 0.0:
                 self.tape.stepped(b)
             ticked = b.memory[at.TICK_DT] >= s.tick - at.ROUND
@@ -303,6 +323,7 @@ class Navigator:
                 if state.box is not box:
                     box = state.box
                     block = in_box(raw, box)
+                state.guessed = doubt is not None
             elif often:
                 self._row()
 
@@ -312,21 +333,25 @@ class Navigator:
         return min(last, first + int(np.searchsorted(rows, self._state.next_row - EPS)) + 1)
 
     def _gap(self, begin: float) -> None:
-        """The IMU was silent: little is known of the motion; what is constant is kept.
+        """The IMU was silent for long: little is known of the motion; what is constant is kept.
 
-        Navigation goes on in doubt of its heading, without the constraints that need one, until a
-        course is heard.
+        Navigation goes on in doubt of its heading, which is set aside while nothing is heard that has a
+        direction. Then, until a course is heard, constraints that need one rest.
         """
         state = self._state
         while state.pending and state.pending[0].time <= begin:
             state.pending.pop(0)
+        state.bench.forget()
         state.aligner = self.settings.aligner.copy()
         if state.aligned:
-            state.belief.lose_track(begin, begin - state.clock)
+            state.lose_track(begin)
             for bridge in state.bridges:
                 bridge.lost()
+            for constraint in state.constraints.values():
+                constraint.lost()
             if self.tape is not None:
-                self.tape.forgot(everything=False)
+                self.tape.missed(begin - state.clock)
+        state.lately.forget()
         state.clock = begin
 
     def _tick(self) -> None:
@@ -341,8 +366,10 @@ class Navigator:
         if jolt is not None:
             self._knocked(jolt)
         for name, constraint in state.constraints.items():
+            if state.guessed and constraint.needs_samples:
+                continue
             observation = constraint.tick(state.belief, motion)
-            if observation is None or (state.aligner is not None and constraint.needs_heading):
+            if observation is None or (constraint.needs_heading and not state.headed):
                 continue
             if self._update(name, motion.time, observation):
                 state.heard[name] = motion.time
@@ -350,8 +377,10 @@ class Navigator:
             heeded = k in state.manner.voices
             if heeded or self.keeps_learning:
                 for channel, said in bridge.tick(state.belief, motion):
-                    if heeded and self._update(channel, motion.time, said):
-                        state.heard["bridge"] = motion.time
+                    if heeded:
+                        state.face(said)
+                        if self._update(channel, motion.time, said):
+                            state.heard["bridge"] = motion.time
         self._row()
 
     def _knocked(self, jolt: Jolt) -> None:
@@ -375,7 +404,7 @@ class Navigator:
                 shared = shared + np.outer(off, off) / HOLDS
             if source != "gnss" and state.manner.scale != 1.0:
                 shared = shared + (state.manner.scale - 1.0) * state.belief.P[:3, :3]
-            row = state.clock, state.belief, shared, source
+            row = state.clock, state.stated, shared, source
             self.journal.row(*row)
             if self.tape is not None:
                 self.tape.row(*row)

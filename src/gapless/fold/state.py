@@ -7,13 +7,17 @@ import math
 from dataclasses import dataclass, field
 from typing import Final
 
+import numpy as np
+
 from gapless.alignment.coarse import Aligner
 from gapless.bridges.base import Bridge
 from gapless.filters.adaptation.base import Adaptation
 from gapless.filters.consider import Wander
 from gapless.fold.manner import Manner
 from gapless.inertial.belief import Belief
-from gapless.measurements.base import Constraint
+from gapless.inertial.lately import Lately
+from gapless.inertial.unseen import UNKNOWN, Turned, lose_track, turn, turned_about
+from gapless.measurements.base import Constraint, Observation
 from gapless.trip.events import Event, ImuBlock, Reading
 from gapless.trip.recording import Array
 from gapless.witnesses.bench import Bench
@@ -22,6 +26,8 @@ LASTS: Final = 1.6
 """A fix or a bridge's word holds for so long [s]: a second, and what a receiver at 1 Hz may be late."""
 SOON: Final = 60.0
 """A filter that fixes put right does not go far astray again within this time [s]."""
+ASIDE: Final = 1e-6
+"""An observation that sees less than this share of its own variance has no direction."""
 REACH: Final = 0.5
 """So much longer than `lateness` is the last part of a long block [s]."""
 
@@ -67,6 +73,12 @@ class State:
         Takes what the sensors feel to the axes of the box as it sat at first, where it was knocked over.
     lost : bool
         Whether nothing of what was estimated is believed: the next start begins anew.
+    lately : Lately
+        What the IMU felt before the last sample, for a hole.
+    guessed : bool
+        Whether the present tick holds samples that bridge a hole.
+    turned : Turned or None
+        What the belief leaves out of its doubt.
     """
 
     belief: Belief
@@ -88,6 +100,9 @@ class State:
     astray: tuple[float, ...] = ()
     lost: bool = False
     box: Array | None = None
+    lately: Lately = field(default_factory=Lately)
+    guessed: bool = False
+    turned: Turned | None = None
 
     @property
     def source(self) -> str:
@@ -100,6 +115,47 @@ class State:
         if any(now - heard.get(name, -math.inf) < 1.0 for name in (*self.constraints, "odometer")):
             return "constraints"
         return "ins"
+
+    @property
+    def headed(self) -> bool:
+        """Whether the belief's heading is one that constraints which need one may count on."""
+        return self.aligner is None or (self.turned is not None and not self.lost)
+
+    @property
+    def stated(self) -> Belief:
+        """The belief with all of its doubt (a copy where some was set aside)."""
+        if self.turned is None:
+            return self.belief
+        whole = self.belief.copy()
+        turn(whole, *self.turned)
+        return whole
+
+    def lose_track(self, begin: float) -> None:
+        """Carry the belief over a long hole of the IMU.
+
+        Parameters
+        ----------
+        begin : float
+            When samples come again [s].
+        """
+        silence, place = begin - self.clock, self.belief.lla.copy()
+        sd = min(self.lately.turning * silence, UNKNOWN)
+        lose_track(self.belief, begin, silence, sd)
+        place = 0.5 * (place + self.belief.lla)
+        self.turned = Turned(place, sd * sd) if self.turned is None else self.turned.after(sd)
+
+    def face(self, o: Observation) -> None:
+        """Take the doubt that was set aside back into the belief, if an observation has a direction.
+
+        Parameters
+        ----------
+        o : Observation
+        """
+        if self.turned is not None:
+            seen = np.square(o.H[:, :9] @ turned_about(self.belief, self.turned.place)) * self.turned.variance
+            if (seen > ASIDE * o.R.diagonal()).any():
+                turn(self.belief, *self.turned)
+                self.turned = None
 
     @property
     def misled(self) -> bool:
@@ -133,6 +189,9 @@ class State:
             self.astray,
             self.lost,
             self.box,
+            self.lately.copy(),
+            self.guessed,
+            self.turned,
         )
 
     def expect(self, readings: tuple[Reading, ...]) -> None:

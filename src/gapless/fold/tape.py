@@ -92,6 +92,18 @@ class Tape:
             phi[NAV - 1, self.layout.blocks["mounting"].start + 1] = -1.0
         self.entries.append(phi)
 
+    def missed(self, silence: float) -> None:
+        """Note that the IMU was silent for long: positions went on with the velocity.
+
+        Parameters
+        ----------
+        silence : float
+            [s]
+        """
+        phi = np.eye(self.layout.n)
+        phi[:3, 3:6] = silence * np.eye(3)
+        self.entries.append(phi)
+
     def row(self, time: float, belief: Belief, shared: Array, source: str) -> None:
         """Take a row.
 

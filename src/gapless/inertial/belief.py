@@ -175,26 +175,6 @@ class Belief:
             p[8, 8] += p[yaw, yaw]
             p[8, yaw] = p[yaw, 8] = -p[yaw, yaw]
 
-    def lose_track(self, time: float, silence: float) -> None:
-        """Carry on after a silence of the IMU: a car's speed, braking and turning bound what happened.
-
-        Parameters
-        ----------
-        time : float
-            When samples come again [s].
-        silence : float
-            How long there were none [s].
-        """
-        r_m, r_n = earth.radii(np.sin(self.x[0]))
-        self.x[0] += self.x[3] * silence / r_m
-        self.x[1] += self.x[4] * silence / (r_n * np.cos(self.x[0]))
-        self.memory[:] = 0.0
-        self.memory[at.TIME] = time
-        self.set_sd("position", np.array([10.0, 10.0, 1.0]) * silence)
-        self.set_sd("velocity", np.array([1.0, 1.0, 0.1]) * min(3.0 * silence, 15.0))
-        self.set_sd("attitude", np.array([3.0, 3.0, min(15.0 * silence, 100.0)]) * DEG)
-        self.trail = Trail(self.trail.length)
-
     def doubt(self, off: float, ceiling: Array) -> None:
         """Doubt what a bridge that misled the filter taught it: attitude and the biases of the sensors.
 
@@ -225,7 +205,8 @@ class Belief:
         self.x[6:10] = product((np.cos(half), 0.0, 0.0, np.sin(half)), tuple(self.x[6:10]))
         p = self.p.reshape(ROW, ROW)
         p[8, 8] += np.square(0.3 * angle) + np.square(10.0 * DEG)
-        p[11, 11] += np.square(min(abs(angle) / SECONDS, 3.0 * DEG))
+        down = self.C_nb[2]
+        p[(9, 10, 11), (9, 10, 11)] += np.square(down * min(abs(angle) / SECONDS, 3.0 * DEG))
         if "mounting" in self.layout:
             yaw = self.layout.blocks["mounting"].start + 1
             p[yaw, yaw] += angle * angle

@@ -7,15 +7,13 @@ from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from gapless._numba import kernel
 from gapless.inertial import propagate as at
 from gapless.inertial.increments import split
 from gapless.trip.events import EPS, ImuBlock, Reading
 from gapless.trip.recording import Array
-
-GAP = 0.5
-"""A longer silence of the IMU is not bridged: it ends in a new alignment [s]."""
 
 
 class Piece(NamedTuple):
@@ -36,7 +34,7 @@ class Piece(NamedTuple):
 
 
 def without_holes(block: ImuBlock) -> Iterator[ImuBlock]:
-    """The stretches of a block that have no hole longer than `GAP` inside.
+    """The stretches of a block that have no hole inside.
 
     Parameters
     ----------
@@ -46,13 +44,35 @@ def without_holes(block: ImuBlock) -> Iterator[ImuBlock]:
     ------
     ImuBlock
     """
-    begin = block.time - block.dt
-    holes = np.flatnonzero(begin[1:] - block.time[:-1] > GAP) + 1
+    holes = np.flatnonzero(_silence(block)) + 1
     if not len(holes):
         yield block
         return
-    for first, last in pairwise([0, *holes.tolist(), len(begin)]):
+    for first, last in pairwise([0, *holes.tolist(), len(block.time)]):
         yield block.rows(first, last)
+
+
+def parted(clock: float, block: ImuBlock) -> float:
+    """How long the IMU was silent before a block.
+
+    Parameters
+    ----------
+    clock : float
+        When the sample before it ended [s].
+    block : ImuBlock
+
+    Returns
+    -------
+    float
+        [s]; 0 where nothing is missing: half an interval is the stamps' own.
+    """
+    silent = float(block.time[0] - block.dt[0]) - clock
+    return silent if silent > 0.5 * float(block.dt[0]) else 0.0
+
+
+def _silence(block: ImuBlock) -> NDArray[np.bool_]:
+    """Whether something is missing before each sample but the first; as `parted`."""
+    return np.asarray(block.time[1:] - block.dt[1:] - block.time[:-1] > 0.5 * block.dt[1:])
 
 
 def pieces(block: ImuBlock, pending: Sequence[Reading], memory: Array) -> Iterator[Piece]:

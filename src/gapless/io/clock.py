@@ -60,6 +60,22 @@ def gap_length(period: float) -> float:
     return max(5.0 * period, 0.5)
 
 
+def hole_length(period: float) -> float:
+    """Shortest silence that the next sample does not cover: max(5 intervals, 0.1 s).
+
+    Parameters
+    ----------
+    period : float
+        Nominal interval [s].
+
+    Returns
+    -------
+    float
+        [s]
+    """
+    return max(5.0 * period, 0.1)
+
+
 def even_stamps(time: Array, period: float) -> tuple[Array, int]:
     """Increasing stamps from a clock that ticks more coarsely than the samples come.
 
@@ -112,13 +128,13 @@ def intervals(time: Array, period: float) -> tuple[Array, NDArray[np.bool_]]:
     Returns
     -------
     dt : ndarray, shape (n,)
-        [s]: the stamp difference; the nominal interval for the first row and after a gap, so that
-        `time[k] - dt[k] > time[k - 1]` shows the gap.
-    gap : ndarray of bool, shape (n,)
-        Rows that follow a gap.
+        [s]: the stamp difference; the nominal interval for the first row and after a hole, so that
+        `time[k] - dt[k] > time[k - 1]` shows the hole.
+    hole : ndarray of bool, shape (n,)
+        Rows that follow a hole.
     """
     dt = np.diff(time, prepend=time[0] - period)
-    gap = dt > gap_length(period)
-    dt[gap] = period
+    hole = dt > hole_length(period)
+    dt[hole] = period
     dt[0] = period
-    return dt, gap
+    return dt, hole

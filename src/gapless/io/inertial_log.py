@@ -6,11 +6,12 @@ from typing import Final
 
 import numpy as np
 
-from gapless.io.clock import even_stamps, gap_length, intervals, nominal_interval
+from gapless.io.clock import even_stamps, hole_length, intervals, nominal_interval
 from gapless.io.log import Log
 from gapless.io.order import in_order
 from gapless.io.silence import check_silence
 from gapless.io.streams import check_one_device
+from gapless.trip.events import GAP
 from gapless.trip.recording import Array, Imu, Note
 
 GYRO: Final = ("gyro_x", "gyro_y", "gyro_z")
@@ -78,9 +79,9 @@ def imu_from_rates(log: Log, axes: Array | None = None) -> tuple[Imu, list[Note]
 def imu_from_increments(log: Log) -> tuple[Imu, list[Note]]:
     """A log of increments, each over the interval that ends at its stamp.
 
-    Where rows are missing, an increment covers its own interval only; it is stretched over the
-    time since the row before if its velocity increment shows so (|dvel| nearer to gravity over the
-    nominal interval than over the whole).
+    Where rows are missing, an increment covers its own interval only or the whole time since the row
+    before, whichever its velocity increment is nearer to under gravity. In the first case it is stretched
+    over a short time; a longer one is a hole.
 
     Parameters
     ----------
@@ -105,7 +106,10 @@ def imu_from_increments(log: Log) -> tuple[Imu, list[Note]]:
     check_one_device(log, np.column_stack([dtheta, dvel]))
     time, dt, mended = _stamps(log)
     notes += mended
-    late = np.flatnonzero(dt > 1.5 * period)
+    whole = np.diff(time, prepend=time[0] - period)
+    covers = (whole > dt) & (np.linalg.norm(dvel, axis=1) >= 0.5 * 9.8 * (whole + period))
+    dt[covers] = whole[covers]
+    late = np.flatnonzero(~covers & (dt > 1.5 * period))
     force = np.linalg.norm(dvel[late], axis=1)
     late = late[force < 0.5 * 9.8 * (dt[late] + period)]
     if len(late):
@@ -207,12 +211,12 @@ def _stamps(log: Log) -> tuple[Array, Array, list[Note]]:
             f"{1e3 * period:.4g} ms) spaces them evenly, moving them by up to {1e3 * moved:.3g} ms"
         )
         notes.append(log.note(what, len(time) - begin))
-    dt, gap = intervals(time, period)
-    notes += _gap_notes(log, np.diff(time)[gap[1:]])
-    late = int(((dt > 1.5 * period) & ~gap).sum())
+    dt, hole = intervals(time, period)
+    notes += _hole_notes(log, np.diff(time)[hole[1:]])
+    late = int(((dt > 1.5 * period) & ~hole).sum())
     if late:
         notes.append(log.note("intervals longer than 1.5 nominal ones, covered by the next sample", late))
-    plain = dt[(dt <= 1.5 * period) & ~gap]
+    plain = dt[(dt <= 1.5 * period) & ~hole]
     if begin == len(time) and np.ptp(plain) > 0.05 * period:
         what = f"intervals vary from {1e3 * plain.min():.3g} to {1e3 * plain.max():.3g} ms; taken as stamped"
         notes.append(log.note(what))
@@ -229,15 +233,20 @@ def _given_intervals(log: Log) -> tuple[Array, Array, list[Note]]:
         k = int(np.argmax(wrong))
         what = f"dt is {dt[k]:.6g} s: not positive, or more than the time since the row before"
         log.refuse(what, "mend it, or leave the column out", k)
-    gap = silent > gap_length(float(np.median(dt)))
+    hole = silent > hole_length(float(np.median(dt)))
     if log.rows is not None:
-        lost = 1 + np.flatnonzero((np.diff(np.sort(log.rows)) > 1) & ~gap)
+        lost = 1 + np.flatnonzero((np.diff(np.sort(log.rows)) > 1) & ~hole)
         dt[lost] = time[lost] - time[lost - 1]
-    return time, dt, _gap_notes(log, np.diff(time)[gap])
+    return time, dt, _hole_notes(log, np.diff(time)[hole])
 
 
-def _gap_notes(log: Log, silent: Array) -> list[Note]:
-    if not len(silent):
-        return []
-    what = f"gaps, {silent.sum():.1f} s in all, the longest {silent.max():.2f} s; left open"
-    return [log.note(what, len(silent))]
+def _hole_notes(log: Log, silent: Array) -> list[Note]:
+    notes = []
+    for what, some in (
+        ("holes, {}; bridged by what was felt on both sides", silent[silent <= GAP]),
+        ("gaps, {}; left open", silent[silent > GAP]),
+    ):
+        if len(some):
+            lasted = f"{some.sum():.1f} s in all, the longest {some.max():.2f} s"
+            notes.append(log.note(what.format(lasted), len(some)))
+    return notes

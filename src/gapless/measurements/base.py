@@ -53,11 +53,14 @@ class Constraint(Protocol):
     ----------
     needs_heading : bool
         Whether it misleads a filter that may be wrong about its heading by a quarter turn.
+    needs_samples : bool
+        Whether it judges how the IMU shakes: what bridges a hole does not.
     parameters : tuple of str
         Attributes that may be tuned on the way.
     """
 
     needs_heading: ClassVar[bool]
+    needs_samples: ClassVar[bool] = False
     parameters: ClassVar[tuple[str, ...]]
 
     def tick(self, belief: Belief, motion: Motion) -> Observation | None:
@@ -82,6 +85,10 @@ class Constraint(Protocol):
         reading : Reading
         """
         ...
+
+    def lost(self) -> None:
+        """The IMU was silent: what was felt before does not lead up to what follows."""
+        return
 
     def tuned(self, like: Self) -> Self:
         """An independent constraint with the same memory and the parameters of another.

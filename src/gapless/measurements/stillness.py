@@ -209,6 +209,7 @@ class Stillness(Constraint):
     lasted: float = 0.0
     last: float = -math.inf
     needs_heading: ClassVar[bool] = False
+    needs_samples: ClassVar[bool] = True
     parameters: ClassVar[tuple[str, ...]] = ("sd", "sd_rate", "odds", "hold")
 
     def hear(self, reading: Reading) -> None:
@@ -270,6 +271,10 @@ class Stillness(Constraint):
     def _seen_still(self, time: float) -> bool:
         """GNSS sees the car stand: a steady rate is then the gyro's, however large."""
         return self.label == STILL and time - self.label_time < 2.2 and time - self.label_since > 2.0
+
+    def lost(self) -> None:
+        """Begin a new window; see `Constraint.lost`."""
+        self.filled, self.lasted = 0, 0.0
 
     def _known(self, time: float) -> bool:
         """Both classes have been seen, and a fresh GNSS speed does not contradict."""

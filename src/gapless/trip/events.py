@@ -10,6 +10,8 @@ from gapless.trip.recording import Array, Imu
 
 EPS = 1e-6
 """Times closer than this are the same instant [s]."""
+GAP = 2.5
+"""A longer silence of the IMU is not bridged: it ends in a new alignment [s]."""
 
 
 class Reading(NamedTuple):

@@ -95,15 +95,17 @@ def test_row_without_value_is_bridged(drive):
     assert abs(r.imu.dt[199] - 0.03) < 1e-9  # rows 200, 201 and 202 of the log
 
 
-def test_gap_is_left_open_and_short_silence_covered(drive):
+def test_holes_and_gaps_are_left_open_and_short_silence_covered(drive):
+    drive["imu"]["time"][2000:] += 0.08
     drive["imu"]["time"][4000:] += 0.3
     drive["imu"]["time"][6000:] += 5.0
     r = read(drive)
     start = r.imu.time - r.imu.dt
     opened = np.flatnonzero(start[1:] - r.imu.time[:-1] > 1e-6) + 1
-    assert opened.tolist() == [6000]
-    assert abs(r.imu.dt[6000] - 0.01) < 1e-9
-    assert abs(r.imu.dt[4000] - 0.31) < 1e-9
+    assert opened.tolist() == [4000, 6000]
+    np.testing.assert_allclose(r.imu.dt[[4000, 6000]], 0.01, atol=1e-9)
+    assert abs(r.imu.dt[2000] - 0.09) < 1e-9
+    assert says(r, "holes, 0.3 s in all, the longest 0.31 s; bridged")[0].count == 1
     assert says(r, "gaps, 5.0 s in all")[0].count == 1
     assert says(r, "covered by the next")[0].count == 1
 
