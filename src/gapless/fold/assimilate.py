@@ -74,8 +74,11 @@ def assimilate(
     verdict, ruling = Verdict(None), "use"
     if reading is not None:
         ruling = _heard(state, settings, reading, o, nis, journal)
-    elif channel == "zero_velocity" and state.bench.rests_in_vain(time, nis <= AT_REST):
+    elif channel == "zero_velocity" and state.bench.in_vain(channel, time, nis <= AT_REST):
         ruling = "believe"
+    elif channel == "nonholonomic" and state.bench.in_vain(channel, time, nis <= soft_bound(o.z.size)):
+        journal.knock(time, b.remount(o.z))
+        nis, s, hp = assess(b.p, ROW, n, o.z, o.H, o.R)
     if ruling == "turn":
         _turn(state, o.z, journal, time)
     if ruling in ("believe", "turn"):

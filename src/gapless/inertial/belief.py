@@ -211,6 +211,27 @@ class Belief:
             yaw = self.layout.blocks["mounting"].start + 1
             p[yaw, yaw] += angle * angle
 
+    def remount(self, slip: Array) -> float:
+        """Doubt how the box sits in the car, for the car seems to slip.
+
+        Parameters
+        ----------
+        slip : ndarray, shape (2,)
+            Innovation of the constraint: right, down [m/s].
+
+        Returns
+        -------
+        float
+            By how much the box would have to be turned [rad].
+        """
+        if "mounting" not in self.layout:
+            return 0.0
+        turn = slip / max(float(np.hypot(*self.v_n[:2])), 2.0)
+        p, first = self.p.reshape(ROW, ROW), self.layout.blocks["mounting"].start
+        p[first, first] += turn[1] ** 2
+        p[first + 1, first + 1] += turn[0] ** 2
+        return float(np.hypot(*turn))
+
     def knocked(self, turn: Array, since: float, gained: Array, ceiling: Array) -> None:
         """Go on after the box was turned: in its former axes, in doubt of how well these are known.
 

@@ -64,7 +64,7 @@ class Bench:
     turned: float = 0.0
     askew: Askew = field(default_factory=Askew)
     story: Story = field(default_factory=Story)
-    at_odds: float = math.inf
+    at_odds: dict[str, float] = field(default_factory=dict)
 
     def hear(self, reading: Reading, o: Observation, nis: float, bound: float, belief: Belief) -> Ruling:
         """Rule on a reading before it is used.
@@ -126,7 +126,7 @@ class Bench:
         bool
         """
         both = [one for name, one in self.channels.items() if name in ("position", "velocity")]
-        if any(one.heard or one.copies(time) for one in both) or not self.story.drove:
+        if not both or any(one.heard or one.copies(time) for one in both) or not self.story.drove:
             return False
         return time - max(self.story.since, *(one.silent for one in both)) > LOST
 
@@ -143,28 +143,29 @@ class Bench:
         self.forget()
         return "turn"
 
-    def rests_in_vain(self, time: float, fits: bool) -> bool:
-        """Whether a car that GNSS sees stand has surprised the filter for too long: a sensor's zero moved.
+    def in_vain(self, name: str, time: float, fits: bool) -> bool:
+        """Whether a constraint has surprised a filter that GNSS is with for too long: what it rests on moved.
 
         Parameters
         ----------
+        name : str
+            Of the constraint.
         time : float
+            [s]
         fits : bool
-            Whether standing still is no surprise.
+            Whether it is no surprise now.
 
         Returns
         -------
         bool
             True once; the filter is to be widened.
         """
-        seen = any(self._believed(name, time) for name in ("position", "velocity"))
-        if fits or not seen or self.at_odds == math.inf:
-            self.at_odds = time
-            return False
-        if time - self.at_odds < INSISTS:
-            return False
-        self.at_odds = time
-        return True
+        seen = any(self._believed(channel, time) for channel in ("position", "velocity"))
+        since = self.at_odds.get(name, math.inf)
+        long = time - since >= INSISTS
+        if fits or not seen or long or since == math.inf:
+            self.at_odds[name] = time
+        return long and seen and not fits
 
     def _metres(self, reading: Reading) -> Array:
         """A position in metres from the first one; only differences count."""
@@ -214,7 +215,7 @@ class Bench:
 
     def forget(self) -> None:
         """The filter began anew: nothing that was compared with it counts."""
-        self.channels, self.fitted, self.offset = {}, {}, np.zeros(3)
+        self.channels, self.fitted, self.at_odds, self.offset = {}, {}, {}, np.zeros(3)
         self.askew.forget()
 
     def copy(self) -> Self:
@@ -222,7 +223,8 @@ class Bench:
         new = object.__new__(type(self))
         vars(new).update(vars(self))
         new.channels = {name: one.copy() for name, one in self.channels.items()}
-        new.fitted, new.askew = dict(self.fitted), self.askew.copy()
+        new.fitted, new.at_odds = dict(self.fitted), dict(self.at_odds)
+        new.askew = self.askew.copy()
         new.story = self.story.copy()
         new.sign, new.jolts = self.sign.copy(), self.jolts.copy()
         return new
