@@ -146,6 +146,7 @@ def _turn(state: State, z: Array, journal: Journal, time: float) -> None:
         turn = about(c[2], angle)
         state.box = turn if state.box is None else turn @ state.box
         journal.knock(time, angle)
+        state.bench.moved = time
         angle = 0.0
     b.turn(angle)
 

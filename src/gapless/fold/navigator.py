@@ -362,7 +362,7 @@ class Navigator:
         tilt = math.sqrt(max(0.5 * float(state.belief.p[6 * ROW + 6] + state.belief.p[7 * ROW + 7]), 0.0))
         c = state.belief.C_nb
         turning = np.cross(motion.rate, c.T @ state.belief.v_n)  # a corner leans on the box, no blow does
-        jolt = state.bench.jolts.feel(motion.force - turning, c[2], tilt, dt)
+        jolt = state.bench.jolts.feel(motion.force - turning, c, tilt, dt)
         if jolt is not None:
             self._knocked(jolt)
         for name, constraint in state.constraints.items():
@@ -389,6 +389,7 @@ class Navigator:
         state.box = jolt.turn if state.box is None else jolt.turn @ state.box
         state.belief.knocked(jolt.turn, jolt.since, jolt.gained, self.settings.ceiling)
         state.bench.forget()
+        state.bench.moved = state.clock
         for bridge in state.bridges:
             bridge.lost()
         self.journal.knock(state.clock - jolt.since, jolt.angle)

@@ -32,6 +32,8 @@ AGREED: Final = 2.5
 """A channel that was believed so lately is a witness [s]."""
 LAXITY: Final = 0.3
 """Error of a velocity that is beyond what its deviation says [m/s]."""
+SOON, SETTLES = 3.0, 30.0
+"""So soon within this after the box was found to have moved [s]."""
 FITTING: Final = 18.0 * DEG
 """What is askew by less may be a clock, as long as velocities fit [rad]."""
 ACCUSED: Final = 1.5
@@ -62,6 +64,7 @@ class Bench:
     jolts: Jolts = field(default_factory=Jolts)
     origin: Array | None = None
     turned: float = 0.0
+    moved: float = -math.inf
     askew: Askew = field(default_factory=Askew)
     story: Story = field(default_factory=Story)
     at_odds: dict[str, float] = field(default_factory=dict)
@@ -128,7 +131,8 @@ class Bench:
         both = [one for name, one in self.channels.items() if name in ("position", "velocity")]
         if not both or any(one.heard or one.copies(time) for one in both) or not self.story.drove:
             return False
-        return time - max(self.story.since, *(one.silent for one in both)) > LOST
+        enough = SOON if time - self.moved < SETTLES else LOST
+        return time - max(self.story.since, *(one.silent for one in both)) > enough
 
     def _turned(self, said: Said, ruling: Ruling) -> Ruling:
         """Whether accelerations are felt from another side than they are seen."""

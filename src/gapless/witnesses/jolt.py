@@ -52,15 +52,13 @@ class Jolt(NamedTuple):
 
 
 @kernel
-def lean(ring: Array, down: Array) -> tuple[float, float, Array]:
+def lean(ring: Array) -> tuple[float, float, Array]:
     """How far the mean force leans from the vertical, and how long it is.
 
     Parameters
     ----------
     ring : ndarray, shape (k, 3)
-        Mean forces of ticks [m/s^2].
-    down : ndarray, shape (3,)
-        The vertical in the box.
+        Mean forces of ticks, north, east, down by the filter's attitude [m/s^2].
 
     Returns
     -------
@@ -75,8 +73,7 @@ def lean(ring: Array, down: Array) -> tuple[float, float, Array]:
         for j in range(3):
             mean[j] += ring[i, j] / ring.shape[0]
     length = np.sqrt(mean[0] ** 2 + mean[1] ** 2 + mean[2] ** 2)
-    dot = -(mean[0] * down[0] + mean[1] * down[1] + mean[2] * down[2])
-    return np.arccos(min(1.0, max(-1.0, dot / max(length, 1e-9)))), length, mean
+    return np.arccos(min(1.0, max(-1.0, -mean[2] / max(length, 1e-9)))), length, mean
 
 
 @dataclass
@@ -100,17 +97,17 @@ class Jolts:
     length: float = 0.0
     steady: int = 0
 
-    def feel(self, force: Array, down: Array, tilt: float, tick: float) -> Jolt | None:
+    def feel(self, force: Array, c_nb: Array, tilt: float, tick: float) -> Jolt | None:
         """Take in a tick.
 
         Parameters
         ----------
         force : ndarray, shape (3,)
-            Mean specific force [m/s^2].
-        down : ndarray, shape (3,)
-            The vertical in the box, as the filter has it.
+            Mean specific force in the box [m/s^2].
+        c_nb : ndarray, shape (3, 3)
+            Attitude, as the filter has it.
         tilt : float
-            How far the filter may be wrong about that [rad].
+            How far it may be wrong about the vertical [rad].
         tick : float
             Its length [s].
 
@@ -118,10 +115,10 @@ class Jolts:
         -------
         Jolt or None
         """
-        self.ring = np.concatenate([self.ring[-(WINDOW - 1) :], force[None, :]])
+        self.ring = np.concatenate([self.ring[-(WINDOW - 1) :], (c_nb @ force)[None, :]])
         if len(self.ring) < WINDOW:
             return None
-        angle, length, mean = lean(self.ring, down)
+        angle, length, mean = lean(self.ring)
         growing, self.peak = angle > self.peak, angle
         if angle < STEADY:
             self.steady += 1
@@ -133,8 +130,9 @@ class Jolts:
         if length - self.length > LONGER * self.length * (1.0 / max(float(np.cos(angle)), 0.2) - 1.0):
             return None
         self.ring, self.peak = self.ring[:0], 0.0
-        turn = between(mean, -down)
-        return Jolt(turn, WINDOW * tick, mean - turn @ mean, angle)
+        felt = c_nb.T @ mean
+        turn = between(felt, -c_nb[2])
+        return Jolt(turn, WINDOW * tick, felt - turn @ felt, angle)
 
     def copy(self) -> Self:
         """An independent copy."""
