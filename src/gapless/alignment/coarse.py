@@ -10,7 +10,8 @@ from __future__ import annotations
 import math
 from collections import deque
 from dataclasses import dataclass, field
-from typing import NamedTuple, Self
+from itertools import pairwise
+from typing import Final, NamedTuple, Self
 
 import numpy as np
 
@@ -18,6 +19,15 @@ from gapless import attitude, earth
 from gapless.trip.events import Reading
 from gapless.trip.recording import Array
 from gapless.units import DEG
+
+MEMORY: Final = 14.0
+"""Velocities are kept for so long [s]: from the standstill that a car drove off from."""
+TOLD: Final = 0.35
+"""Least sum of squares of the changes of acceleration that tell a reverse from a drive [m^2/s^3]."""
+SURE: Final = 0.5
+"""Share of them that must be felt, the same way or the other."""
+SWIFT: Final = 4.5
+"""A car this fast that shows neither drives forwards [m/s]; a slower one is waited for."""
 
 
 class Start(NamedTuple):
@@ -93,7 +103,7 @@ class Aligner:
     @property
     def _memory(self) -> float:
         """Seconds of samples that are looked at, whatever the blocks they came in."""
-        return 2.0 * self.window + 2.0
+        return max(2.0 * self.window + 2.0, MEMORY + 1.0)
 
     def hear(self, reading: Reading, now: float) -> Start | None:
         """Take in a reading; a start, once there is one.
@@ -132,13 +142,16 @@ class Aligner:
         speed = math.hypot(v_n[0], v_n[1])
         self._standstill(time, speed)
         self.velocities.append((time, v_n))
-        while self.velocities[0][0] < time - self.window - 1.0:
+        while self.velocities[0][0] < time - MEMORY:
             self.velocities.popleft()
         self.fast = self.fast + 1 if self.min_speed < speed < 80.0 else 0
         fresh = self.fix is not None and abs(time - self.fix.time) < 2.0
         if self.fast < 3 or not fresh:
             return None
-        return self._start(time, v_n, sd, now)
+        back = self._reverses()
+        if back is None and speed < SWIFT:
+            return None
+        return self._start(time, v_n, sd, now, bool(back))
 
     def _standstill(self, time: float, speed: float) -> None:
         """Gyro bias from stretches that GNSS calls still."""
@@ -159,9 +172,10 @@ class Aligner:
         oldest = self.blocks[-1][0] - self._memory if self.blocks else 0.0
         return np.asarray(rows[(rows[:, 0] > max(start, oldest)) & (rows[:, 0] <= end)])
 
-    def _start(self, time: float, v_n: Array, sd: float, now: float) -> Start:
+    def _start(self, time: float, v_n: Array, sd: float, now: float, back: bool) -> Start:
         assert self.fix is not None
-        t0, v0 = self.velocities[0]
+        recent = [one for one in self.velocities if one[0] >= time - self.window - 1.0]
+        t0, v0 = recent[0]
         bias = self.turned / self.still if self.still > 5.0 else None
         rows = self._rows(t0, time)
         gained = np.zeros(3)
@@ -170,10 +184,10 @@ class Aligner:
             gained = (v_n - v0) / (time - t0)
             force = _carried(rows, np.zeros(3) if bias is None else bias)
         elif self.blocks:
-            recent = self._rows(now - 0.5, now)
-            force = recent[:, 5:8].sum(axis=0) / max(recent[:, 1].sum(), 1e-9)
+            last = self._rows(now - 0.5, now)
+            force = last[:, 5:8].sum(axis=0) / max(last[:, 1].sum(), 1e-9)
         course = math.atan2(v_n[1], v_n[0])
-        heading = course - self.mounting_yaw
+        heading = course - self.mounting_yaw + (math.pi if back else 0.0)
         roll, pitch = _level(force, gained, heading)
         q_nb = attitude.from_euler(np.array([roll, pitch, heading]))
         late, _ = _turn(self._rows(time, now), bias)
@@ -188,8 +202,29 @@ class Aligner:
             float(np.max(self.fix.sd)),
             max(sd, 0.1),
             math.hypot(sd / speed, 2.0 * DEG),
-            f"course at {speed:.1f} m/s, levelled over {time - t0:.1f} s",
+            f"course at {speed:.1f} m/s{', in reverse' if back else ''}, levelled over {time - t0:.1f} s",
         )
+
+    def _reverses(self) -> bool | None:
+        """Whether speed was gained while the box felt a push from the front; None where that is not clear.
+
+        The slope of the car's hill is not known, but does not change as fast as the force along the car does.
+        """
+        ahead = np.array([math.cos(self.mounting_yaw), math.sin(self.mounting_yaw), 0.0])
+        gains, pushes = [], []
+        for (t0, v0), (t1, v1) in pairwise(self.velocities):
+            rows = self._rows(t0, t1)
+            if len(rows) < 3 or t1 - t0 < 0.05:
+                continue
+            gains.append((math.hypot(v1[0], v1[1]) - math.hypot(v0[0], v0[1])) / (t1 - t0))
+            pushes.append(float(rows[:, 5:8].sum(axis=0) @ ahead) / float(rows[:, 1].sum()))
+        if len(gains) < 4:
+            return None
+        gain, push = np.array(gains), np.array(pushes)
+        step = float(np.mean([b[0] - a[0] for a, b in pairwise(self.velocities)]))
+        told = float(np.square(gain - gain.mean()).sum()) * step
+        felt = float((gain - gain.mean()) @ (push - push.mean())) * step
+        return felt < 0.0 if told > TOLD and abs(felt) > SURE * told else None
 
     def copy(self) -> Self:
         """An independent copy.

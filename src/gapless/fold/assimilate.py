@@ -30,10 +30,10 @@ FAR, OFTEN = 50.0, 4
 reach of any correction; so often, and nothing of it is believed."""
 WITNESS = 1.0
 """For so long after it was believed an odometer is a witness of the speed [s]."""
+REVERSED = 2.4
+"""What is askew by more is a car that was taken to drive forwards while it reversed [rad]."""
 FAST = 3.0
 """A course tells where a car points from this speed on [m/s]."""
-AT_REST = 1.5
-"""z' S^-1 z of a car at rest stays below this: updates that come five times a second are loose."""
 DENSITIES = 5
 """How many of the noise parameters are densities; the rest are rates."""
 
@@ -74,8 +74,11 @@ def assimilate(
     verdict, ruling = Verdict(None), "use"
     if reading is not None:
         ruling = _heard(state, settings, reading, o, nis, journal)
-    elif channel == "zero_velocity" and state.bench.in_vain(channel, time, nis <= AT_REST):
-        ruling = "believe"
+    elif channel == "zero_velocity":
+        drift = state.bench.drifts(time, o.z[3:], b)
+        if drift is not None:
+            b.drift(drift)
+            nis, s, hp = assess(b.p, ROW, n, o.z, o.H, o.R)
     elif channel == "nonholonomic" and state.bench.in_vain(channel, time, nis <= soft_bound(o.z.size)):
         journal.knock(time, b.remount(o.z))
         nis, s, hp = assess(b.p, ROW, n, o.z, o.H, o.R)
@@ -142,7 +145,7 @@ def _turn(state: State, z: Array, journal: Journal, time: float) -> None:
     v, c = b.v_n[:2] + z[:2], b.C_nb
     yaw = float(b.block("mounting")[1]) if "mounting" in b.layout else 0.0
     ahead = math.atan2(c[1, 0], c[0, 0]) + yaw
-    if math.hypot(*v) > FAST and pointed(math.atan2(v[1], v[0]), ahead, angle):
+    if abs(angle) < REVERSED and math.hypot(*v) > FAST and pointed(math.atan2(v[1], v[0]), ahead, angle):
         turn = about(c[2], angle)
         state.box = turn if state.box is None else turn @ state.box
         journal.knock(time, angle)

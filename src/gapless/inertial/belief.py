@@ -211,6 +211,18 @@ class Belief:
             yaw = self.layout.blocks["mounting"].start + 1
             p[yaw, yaw] += angle * angle
 
+    def drift(self, rate: Array) -> None:
+        """Doubt the gyros' zeros by what they say at rest, and the heading by what that made of it.
+
+        Parameters
+        ----------
+        rate : ndarray, shape (3,)
+            [rad/s]
+        """
+        p = self.p.reshape(ROW, ROW)
+        p[(9, 10, 11), (9, 10, 11)] += np.square(rate)
+        p[8, 8] += np.square(SECONDS * float(np.linalg.norm(rate)))
+
     def remount(self, slip: Array) -> float:
         """Doubt how the box sits in the car, for the car seems to slip.
 

@@ -34,6 +34,10 @@ LAXITY: Final = 0.3
 """Error of a velocity that is beyond what its deviation says [m/s]."""
 SOON, SETTLES = 3.0, 30.0
 """So soon within this after the box was found to have moved [s]."""
+ZERO: Final = 0.1 * DEG
+"""A gyro's zero that is off by so much has moved [rad/s]."""
+APART: Final = 1.0
+"""Words of rest less apart are of one rest [s]."""
 FITTING: Final = 18.0 * DEG
 """What is askew by less may be a clock, as long as velocities fit [rad]."""
 ACCUSED: Final = 1.5
@@ -65,6 +69,7 @@ class Bench:
     origin: Array | None = None
     turned: float = 0.0
     moved: float = -math.inf
+    rested: tuple[float, float, Array, int] = field(default_factory=lambda: (0.0, -math.inf, np.zeros(3), 0))
     askew: Askew = field(default_factory=Askew)
     story: Story = field(default_factory=Story)
     at_odds: dict[str, float] = field(default_factory=dict)
@@ -146,6 +151,34 @@ class Bench:
             return ruling
         self.forget()
         return "turn"
+
+    def drifts(self, time: float, rate: Array, belief: Belief) -> Array | None:
+        """Mean rate of a car that GNSS sees stand, where it is more than a gyro's zero may be.
+
+        Parameters
+        ----------
+        time : float
+            [s]
+        rate : ndarray, shape (3,)
+            Left of the gyros' at rest [rad/s].
+        belief : Belief
+
+        Returns
+        -------
+        ndarray, shape (3,), or None
+            [rad/s], once in `INSISTS` seconds.
+        """
+        seen = any(self._believed(channel, time) for channel in ("position", "velocity"))
+        if not seen or time - self.rested[1] > APART:
+            self.rested = time, time, np.zeros(3), 0
+        since, _, total, n = self.rested
+        self.rested = since, time, total + rate, n + 1
+        if time - since < INSISTS:
+            return None
+        mean = self.rested[2] / self.rested[3]
+        self.rested = time, time, np.zeros(3), 0
+        known = np.sqrt(belief.P.diagonal()[9:12])
+        return mean if bool((np.abs(mean) > ZERO + 4.0 * known).any()) else None
 
     def in_vain(self, name: str, time: float, fits: bool) -> bool:
         """Whether a constraint has surprised a filter that GNSS is with for too long: what it rests on moved.

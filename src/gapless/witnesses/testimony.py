@@ -26,6 +26,8 @@ COPY_SHARE: Final = 0.15
 
 INSISTS: Final = 2.5
 """What follows the motion and surprises the filter for so long, without a break, is right [s]."""
+KNOWN: Final = 2.0
+"""By so much longer for each time that it was silenced: a receiver that lied before may do so again."""
 OFTEN: Final = 3
 """So many readings at least make that."""
 
@@ -76,6 +78,15 @@ class Testimony:
         Since when it is silenced [s]; inf while it is heard.
     follows : float
         Since when a silenced channel has followed the motion [s].
+    since : float
+        Since when it has repeated itself to the bit [s].
+    lies : int
+        How often it was silenced.
+    surprises, surprised : int, float
+        Surprising readings in a row, and since when [s].
+    logged : ndarray
+        Its last reading.
+    past : Increments
     """
 
     size: int
@@ -83,6 +94,7 @@ class Testimony:
     silent: float = math.inf
     follows: float = -math.inf
     since: float = -math.inf
+    lies: int = 0
     surprises: int = 0
     surprised: float = math.inf
     logged: Array = field(default_factory=lambda: np.zeros(0))
@@ -125,11 +137,13 @@ class Testimony:
             "use", "silence" or "believe": the filter is what is wrong.
         """
         if said.time - self.past.last > FORGETS:
-            self.__init__(self.size, self.patience)  # type: ignore[misc]
+            fresh = type(self)(self.size, self.patience, lies=self.lies)
+            vars(self).update(vars(fresh))
         odd = self._odd(said, slack) or accused
         if self.heard:
             if odd:
                 self.silent = self.follows = said.time
+                self.lies += 1
                 self.past.forget()
             self.past.keep(said.time, said.value, said.raw, said.var)
             return "silence" if odd else self._insists(said, denied)
@@ -157,7 +171,8 @@ class Testimony:
             self.surprises, self.surprised = 0, said.time
             return "use"
         self.surprises += 1
-        if self.surprises < OFTEN or said.time - self.surprised < INSISTS:
+        patience = INSISTS * (1.0 + KNOWN * min(self.lies, 5))
+        if self.surprises < OFTEN or said.time - self.surprised < patience:
             return "use"
         self.surprises, self.surprised = 0, said.time
         return "believe"
