@@ -32,7 +32,7 @@ def test_it_is_the_joint_covariance_of_error_and_wander():
         joint[3:, 3:] += (1.0 - decay**2) * np.eye(3)
         fix = np.eye(6) - np.vstack([k, np.zeros((3, 3))]) @ h
         joint = fix @ joint @ fix.T
-        wander.hear(STEP * n, p.ravel(), 3, R, SIGMA)
+        wander.hear(STEP * n, p, R, SIGMA)
         # the gain is recovered as P R^-1: rounding of two inverses
         assert np.allclose(wander.response, joint[:3, :3], rtol=1e-9, atol=1e-12)
         assert np.allclose(wander.shared, joint[:3, 3:], rtol=1e-9, atol=1e-12)
@@ -45,7 +45,7 @@ def test_it_is_what_happens():
     for n, (k, p) in enumerate(gains(60)):
         w = decay * w + np.sqrt(1.0 - decay**2) * rng.standard_normal(w.shape)
         error -= (error + SIGMA * w) @ k.T
-        wander.hear(STEP * n, p.ravel(), 3, R, SIGMA)
+        wander.hear(STEP * n, p, R, SIGMA)
     # a variance from 4000 draws is good to sqrt(2 / 4000) = 2.2 %, four of them
     assert np.allclose(np.cov(error.T).diagonal(), wander.response.diagonal(), rtol=0.09)
 
@@ -55,7 +55,7 @@ def test_a_lasting_error_passes_whole_and_a_quick_one_is_averaged_away():
     for tau in (1e6, 1e-3):
         wander = Wander(tau)
         for n, (_, p) in enumerate(gains(400)):
-            wander.hear(STEP * n, p.ravel(), 3, R, SIGMA)
+            wander.hear(STEP * n, p, R, SIGMA)
         late[tau] = np.sqrt(wander.response.diagonal())
     assert np.allclose(late[1e6], SIGMA, rtol=0.01)
     assert np.all(late[1e-3] < 0.35 * SIGMA)
@@ -64,9 +64,9 @@ def test_a_lasting_error_passes_whole_and_a_quick_one_is_averaged_away():
 def test_a_silence_ends_what_is_shared_but_not_the_error():
     wander, p = Wander(TAU), 0.5 * np.eye(3)
     for n in range(30):
-        wander.hear(STEP * n, p.ravel(), 3, R, SIGMA)
+        wander.hear(STEP * n, p, R, SIGMA)
     before = wander.copy()
-    wander.hear(1e4, 1e-12 * np.eye(3).ravel(), 3, R, SIGMA)
+    wander.hear(1e4, 1e-12 * np.eye(3), R, SIGMA)
     assert np.allclose(wander.response, before.response, atol=1e-6)
     assert np.abs(wander.shared).max() < 1e-6
     assert before.time == pytest.approx(29.0)
