@@ -198,12 +198,14 @@ def velocity_curve(path: Trajectory, accel_bias: Array, imu: Imu) -> Curve:
     return Curve(path.time, np.concatenate([np.zeros((1, 2)), np.cumsum(turned, axis=0)]))
 
 
-def path_curve(path: Trajectory) -> Curve:
-    """Horizontal path but for a slow drift: the integral of a filter's velocity.
+def path_curve(path: Trajectory, lever_arm: Array) -> Curve:
+    """Horizontal path of an antenna but for a slow drift: the integral of a filter's velocity, and its arm.
 
     Parameters
     ----------
     path : Trajectory
+    lever_arm : ndarray, shape (3,)
+        Antenna from the IMU, FRD [m].
 
     Returns
     -------
@@ -212,4 +214,5 @@ def path_curve(path: Trajectory) -> Curve:
     """
     v = path.v_n[:, :2]
     step = 0.5 * (v[1:] + v[:-1]) * np.diff(path.time)[:, None]
-    return Curve(path.time, np.concatenate([np.zeros((1, 2)), np.cumsum(step, axis=0)]))
+    arm = (attitude.to_matrix(attitude.from_euler(path.euler)) @ lever_arm)[:, :2]
+    return Curve(path.time, arm + np.concatenate([np.zeros((1, 2)), np.cumsum(step, axis=0)]))

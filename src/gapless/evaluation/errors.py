@@ -171,8 +171,8 @@ def at_antenna(solution: Trajectory, lever_arm: Array) -> Trajectory:
     ----------
     solution : Trajectory
         With attitude.
-    lever_arm : ndarray, shape (3,)
-        Antenna from the IMU, FRD [m].
+    lever_arm : ndarray, shape (3,) or (n, 3)
+        Antenna from the IMU, FRD [m]; one, or one for each row.
 
     Returns
     -------
@@ -180,7 +180,8 @@ def at_antenna(solution: Trajectory, lever_arm: Array) -> Trajectory:
     """
     if not np.any(lever_arm):
         return solution
-    arm = to_matrix(from_euler(solution.euler)) @ np.asarray(lever_arm, float)
+    arms = np.broadcast_to(np.asarray(lever_arm, float), (len(solution), 3))
+    arm = np.einsum("nij,nj->ni", to_matrix(from_euler(solution.euler)), arms)
     lat, height = solution.lla[:, 0], solution.lla[:, 2]
     r_m, r_n = earth.radii(np.sin(lat))
     east = arm[:, 1] / ((r_n + height) * np.cos(lat))

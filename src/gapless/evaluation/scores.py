@@ -22,7 +22,7 @@ from gapless.evaluation.outages import (
 from gapless.evaluation.statistics import Consistency, Spread, consistency, rms, spread
 from gapless.scenarios import Outage, withheld
 from gapless.trip.motion import first_motion
-from gapless.trip.recording import Recording, Trajectory
+from gapless.trip.recording import Array, Recording, Trajectory
 from gapless.trip.solution import Solution
 
 DECISIONS_TAKEN: Final = "decisions taken late"
@@ -131,7 +131,7 @@ def score(solution: Solution, recording: Recording) -> Scores:
     Scores
     """
     truth = _truth(recording, solution)
-    errors = _errors(solution.trajectory, truth, recording)
+    errors = _errors(solution.trajectory, truth, recording, solution)
     outages = [Outage(a, b) for a, b in solution.outages]
     outside = ~withheld(errors.time, outages, solution.start + truth.late)
     rise = height_offset(errors, outages, solution.start + truth.late)
@@ -172,7 +172,7 @@ def score_pieces(
     decided, start = _decided(whole, DECISIONS_TAKEN), whole.start
     found = []
     for outage, trajectory in pieces:
-        errors = _errors(trajectory, truth, recording)
+        errors = _errors(trajectory, truth, recording, whole)
         scored = Outage(outage.start, outage.until)
         labels = outside_labels(scored, start, recording.imu, begun, decided)
         one = score_outage(errors, scored, start + truth.late, rise, labels)
@@ -215,9 +215,10 @@ def _truth(recording: Recording, solution: Solution) -> _Truth:
     return _Truth(recording.reference, fixes, late if recording.reference_clock == "gnss" else 0.0, late)
 
 
-def _errors(trajectory: Trajectory, truth: _Truth, recording: Recording) -> Errors:
+def _errors(trajectory: Trajectory, truth: _Truth, recording: Recording, solution: Solution) -> Errors:
     if recording.reference is None:  # fixes are on the IMU clock already, and hold for the antenna
-        return solution_errors(at_antenna(trajectory, recording.lever_arm), truth.trajectory)
+        arm = _lever_arm(solution, recording, trajectory.time)
+        return solution_errors(at_antenna(trajectory, arm), truth.trajectory)
     return solution_errors(trajectory, truth.trajectory, truth.clock_offset)
 
 
@@ -280,6 +281,18 @@ _STATEMENTS = (
     "the recording's reference, which navigation never sees",
     "the GNSS itself: in outages the withheld fixes, elsewhere the very fixes that were used",
 )
+
+
+def _lever_arm(solution: Solution, recording: Recording, time: Array) -> Array:
+    """The arm that a solution used: as it estimated it at these times, else as it took it."""
+    found = solution.states.get("lever_arm")
+    if found is not None:
+        rows = solution.trajectory.time
+        return np.column_stack([np.interp(time, rows, axis) for axis in found.T])
+    for decision in solution.decisions:
+        if decision.name == "antenna lever arm":
+            return np.array(decision.value, float)
+    return np.zeros(3) if recording.lever_arm is None else recording.lever_arm
 
 
 def _decided(solution: Solution, name: str) -> float:

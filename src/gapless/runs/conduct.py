@@ -57,6 +57,7 @@ def settings_for(
     -------
     Settings
     """
+    system = decided.used(system)
     built = settings(system, recording, decided.offsets, decided.mounting, decided.gyro_density, 1.0 / rate)
     return replace(built, lateness=max(built.lateness, lateness))
 

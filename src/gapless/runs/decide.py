@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -12,10 +13,12 @@ from gapless import earth
 from gapless.alignment.clock import Curve, Offset, offset, path_curve, velocity_curve
 from gapless.fold.feed import events
 from gapless.fold.navigator import Navigator
+from gapless.runs.arms import Arm, settle
 from gapless.runs.clocks import Clocks, base_offset, believed, clock_decision
 from gapless.runs.prepare import graded
 from gapless.scenarios import Outage
 from gapless.sensors.vibration import gyro_density
+from gapless.systems.arm import lever_arm
 from gapless.systems.build import budget, settings, stamps
 from gapless.systems.learning import BridgeUse
 from gapless.systems.recipe import Adaptation, RehearsalUse, System
@@ -68,6 +71,8 @@ class Decided:
     decisions : tuple of Decision
     span : float
         Seconds that the first pass could navigate; 0 where the past held too little.
+    arm : Arm, optional
+        Where the antenna is; the recipe's word, else the recording's, if not given.
     """
 
     offsets: dict[str, float]
@@ -75,6 +80,20 @@ class Decided:
     gyro_density: float
     decisions: tuple[Decision, ...]
     span: float
+    arm: Arm | None = None
+
+    def used(self, system: System) -> System:
+        """The system with what was decided of its lever arm.
+
+        Parameters
+        ----------
+        system : System
+
+        Returns
+        -------
+        System
+        """
+        return system if self.arm is None else self.arm.used(system)
 
 
 def decide(recording: Recording, system: System, horizon: float = np.inf) -> Decided:
@@ -93,14 +112,14 @@ def decide(recording: Recording, system: System, horizon: float = np.inf) -> Dec
     Decided
     """
     past = recording if horizon == np.inf else recording.slice(-np.inf, horizon)
-    passes = _FirstPass(past, system)
-    passes.run()
+    passes, arm = settle(past, system, partial(_first_pass, past))
     decisions = (
+        arm.decision,
         noise_decision(system, passes.density, stated=recording.grade),
         *passes.clock_decisions(),
         *passes.mounting_decisions(),
     )
-    return Decided(passes.offsets, passes.mounting, passes.density, decisions, passes.span)
+    return Decided(passes.offsets, passes.mounting, passes.density, decisions, passes.span, arm)
 
 
 def decide_before(open_sky: Recording, system: System, outages: tuple[Outage, ...]) -> Decided:
@@ -136,6 +155,12 @@ def decide_before(open_sky: Recording, system: System, outages: tuple[Outage, ..
         )
         decided = replace(decided, decisions=(*decided.decisions, late))
     return decided
+
+
+def _first_pass(past: Recording, system: System) -> _FirstPass:
+    passes = _FirstPass(past, system)
+    passes.run()
+    return passes
 
 
 class _FirstPass:
@@ -210,9 +235,9 @@ class _FirstPass:
         if "position" not in self.given and fixed.any():
             here = earth.lla_to_ned(gnss.lla[fixed], gnss.lla[fixed][0])[:, :2]
             windows = tuple(sorted({min(w, self.span) for w in WINDOWS}))
-            found["position"] = offset(
-                path_curve(path), time[fixed], here, 1, windows=windows, correlation=5.0
-            ).later(base)
+            curve = path_curve(path, lever_arm(self.system, self.past))
+            fit = offset(curve, time[fixed], here, 1, windows=windows, correlation=5.0)
+            found["position"] = fit.later(base)
         if odometer is not None and "odometer" not in self.given:
             speed = np.hypot(path.v_n[:, 0], path.v_n[:, 1])[:, None]
             found["odometer"] = offset(Curve(path.time, speed), odometer.time, odometer.speed[:, None], 1)

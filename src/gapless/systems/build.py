@@ -20,6 +20,7 @@ from gapless.measurements.spread import Spread
 from gapless.measurements.stillness import Stillness
 from gapless.sensors import grade
 from gapless.systems.adjust import named
+from gapless.systems.arm import lever_arm
 from gapless.systems.learning import bridges
 from gapless.systems.recipe import Imu, System
 from gapless.trip.recording import Array, Recording
@@ -76,7 +77,7 @@ def settings(
             "gyro_scale": imu["gyro_scale_sd"],
             "accel_scale": imu["accel_scale_sd"],
             "gravity": system.imu.gravity_sd,
-            "lever_arm": 1.0,
+            "lever_arm": np.array(system.gnss.lever_arm_sd),
             "mounting": angle_sd,
             "axle": system.nonholonomic.axle_sd,
             "odometer_scale": system.odometer.scale_sd,
@@ -217,23 +218,6 @@ def _initial(names: tuple[str, ...], angles: Array, system: System, recording: R
         "lever_arm": lever_arm(system, recording),
     }
     return {name: value for name, value in known.items() if name in names}
-
-
-def lever_arm(system: System, recording: Recording) -> Array:
-    """Antenna from the IMU: the recipe's word, else the recording's.
-
-    Parameters
-    ----------
-    system : System
-    recording : Recording
-
-    Returns
-    -------
-    ndarray, shape (3,)
-        FRD [m].
-    """
-    given = system.gnss.lever_arm
-    return recording.lever_arm if given is None else np.array(given)
 
 
 def _sensors(system: System, recording: Recording, angles: Array) -> dict[str, Sensor]:
