@@ -41,6 +41,8 @@ LEAST = 0.1
 hear the same fixes again."""
 ENOUGH = 600.0
 """Seconds of navigation after which a pass learns little more."""
+LATE = 0.02
+"""By how much a clock is moved to see what becomes of the arm [s]."""
 ROUNDS, SETTLED = 4, 0.05
 """So often clocks and arm are looked for in turn, or until the arm moves by less [m]: each round leaves about
 a quarter of the error."""
@@ -64,6 +66,10 @@ class Known(Protocol):
     @property
     def span(self) -> float:
         """Seconds that could be navigated."""
+
+    @property
+    def clock_sd(self) -> float:
+        """Standard deviation of the positions' clock offset [s]."""
 
 
 K = TypeVar("K", bound=Known)
@@ -198,11 +204,22 @@ def _shows(past: Recording, system: System) -> bool:
 
 
 def _look(past: Recording, system: System, known: Known) -> Found | None:
+    """What fixes say of the arm, and how far they would say it at another clock that may be."""
+    found = _pass(past, system, known, known.offsets)
+    late = {**known.offsets, "position": known.offsets["position"] + LATE}
+    other = _pass(past, system, known, late) if known.clock_sd and found else None
+    if found is None or other is None:
+        return found
+    moved = (other.value - found.value) * min(known.clock_sd, 1.0) / LATE
+    return found._replace(covariance=found.covariance + np.outer(moved, moved))
+
+
+def _pass(past: Recording, system: System, known: Known, offsets: Mapping[str, float]) -> Found | None:
     """Navigate the past with the arm as a state, and fixes as good as they say."""
     free = _plain(with_arm(system, lever_arm(system, past), np.array(system.gnss.lever_arm_sd)))
-    built = settings(free, past, known.offsets, known.mounting, known.density, free.filter.tick)
+    built = settings(free, past, offsets, known.mounting, known.density, free.filter.tick)
     navigator = Navigator(built)
-    for event in events(past, stamps(free, known.offsets), thin=0.45):
+    for event in events(past, stamps(free, offsets), thin=0.45):
         navigator.step(event)
         if navigator.aligned and navigator.time > navigator.journal.alignments[0][0] + ENOUGH:
             break

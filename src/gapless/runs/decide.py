@@ -261,6 +261,11 @@ class _FirstPass:
         chosen = [c for c in CHANNELS if present[c]]
         return [clock_decision(c, self._clocks, self.span) for c in chosen]
 
+    @property
+    def clock_sd(self) -> float:
+        """Standard deviation of the positions' clock offset [s]; 0 where it was given."""
+        return believed("position", self._clocks).sd if "position" in self.found else 0.0
+
     def mounting_decisions(self) -> list[Decision]:
         """Pitch and yaw of the car's forward axis in the box."""
         if not ({"nonholonomic"} & set(self.system.constraints)):
