@@ -10,11 +10,11 @@ from msgspec.structs import replace as change
 from gapless import earth
 from gapless.errors import ConfigError
 from gapless.evaluation import nees, score
+from gapless.runs import smooth as module
 from gapless.runs.fuse import fuse
 from gapless.runs.smooth import smooth
 from gapless.scenarios import plan
 from gapless.simulate import Receiver, simulate
-from gapless.systems import smooth as module
 from gapless.systems.library import parse
 from gapless.systems.recipe import Clock, System
 
