@@ -46,7 +46,7 @@ class Accuracy:
     roll_rmse, pitch_rmse, heading_rmse : float
         [rad]
     coverage : float
-        Share of epochs whose stated 95 % ellipse holds the truth.
+        Share of epochs whose stated 95 % ellipse holds the truth; one that states none is outside.
     nees : Consistency
         Of the horizontal error; the band supposes independent epochs.
     """
@@ -102,6 +102,11 @@ class Scores:
         return tuple(o for o in self.outages if o.counts)
 
     @property
+    def unstated(self) -> int:
+        """Epochs with a known error and no ellipse that could hold it: see `Errors.usable`."""
+        return self.errors.unstated
+
+    @property
     def horizontal(self) -> Spread:
         """Spread of the largest horizontal error over the pool [m]."""
         return pool_spread([self])
@@ -114,6 +119,7 @@ class Scores:
         return sum(o.coverage_95 * o.truth_epochs for o in told) / epochs if epochs else math.nan
 
 
+@np.errstate(over="ignore", invalid="ignore")  # whatever a solution states
 def score(solution: Solution, recording: Recording) -> Scores:
     """Score a solution against the recording's reference, or its GNSS where there is none.
 
@@ -148,6 +154,7 @@ def score(solution: Solution, recording: Recording) -> Scores:
     )
 
 
+@np.errstate(over="ignore", invalid="ignore")
 def score_pieces(
     whole: Solution, pieces: Sequence[tuple[Outage, Trajectory]], recording: Recording
 ) -> tuple[Scores, tuple[tuple[OutageScore, Ages], ...]]:
@@ -254,7 +261,7 @@ def accuracy(errors: Errors, height_offset: float = 0.0) -> Accuracy:
         roll_rmse=rms(errors.attitude[:, 0]),
         pitch_rmse=rms(errors.attitude[:, 1]),
         heading_rmse=rms(errors.attitude[:, 2]),
-        coverage=band.within,
+        coverage=errors.coverage(),
         nees=band,
     )
 

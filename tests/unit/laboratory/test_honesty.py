@@ -14,11 +14,11 @@ from gapless.laboratory.methods import Function
 from gapless.laboratory.recipes import Recipe
 from gapless.laboratory.study import scenario
 from gapless.reports import summarise
+from gapless.runs import forks
 from gapless.runs.decide import decide
 from gapless.runs.fuse import fuse
 from gapless.scenarios import plan
 from gapless.simulate import WheelSensor, simulate
-from gapless.systems import forks
 from gapless.trip.motion import displace
 from gapless.trip.recording import Trajectory
 from gapless.trip.solution import Solution
