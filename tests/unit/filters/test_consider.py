@@ -70,3 +70,49 @@ def test_a_silence_ends_what_is_shared_but_not_the_error():
     assert np.allclose(wander.response, before.response, atol=1e-6)
     assert np.abs(wander.shared).max() < 1e-6
     assert before.time == pytest.approx(29.0)
+
+
+def cross(a):
+    return np.array([[0.0, -a[2], a[1]], [a[2], 0.0, -a[0]], [-a[1], a[0], 0.0]])
+
+
+def antenna(reach, count, r, turning=False):
+    """H, K and P after each update of a filter with an attitude; its fixes are an antenna's."""
+    p = np.diag([25.0] * 3 + [0.02] * 3)
+    for n in range(count):
+        course = 0.4 * n if turning else 0.3
+        arm = reach * np.array([np.cos(course), np.sin(course), -0.4])
+        h = np.hstack([np.eye(3), -cross(arm)])
+        p = p + np.diag([*DRIFT.diagonal(), 1e-6, 1e-6, 1e-5])
+        k = p @ h.T @ np.linalg.inv(h @ p @ h.T + r)
+        p = (np.eye(6) - k @ h) @ p
+        yield h, k, p
+
+
+@pytest.mark.parametrize("sd", [0.01, 0.1, 1.0, 10.0])
+@pytest.mark.parametrize("reach", [0.0, 1.0, 3.0])
+def test_an_antenna_away_from_the_box_is_followed_exactly(reach, sd):
+    """Nine states, the last three of them unseen: what the wander does to the place that the fixes show."""
+    wander, decay, r = Wander(TAU), np.exp(-STEP / TAU), sd * sd * np.eye(3)
+    slow = 0.6 * sd * np.ones(3)
+    joint = np.zeros((9, 9))
+    joint[6:, 6:] = np.eye(3)
+    for n, (h, k, p) in enumerate(antenna(reach, 100, r)):
+        joint[6:] *= decay
+        joint[:, 6:] *= decay
+        joint[6:, 6:] += (1.0 - decay**2) * np.eye(3)
+        fix = np.eye(9) - np.vstack([k, np.zeros((3, 3))]) @ np.hstack([h, np.diag(slow)])
+        joint = fix @ joint @ fix.T
+        wander.hear(STEP * n, h @ p @ h.T, r, slow)
+        # the gain is had as H P H' R^-1: P of 25 m^2 against R of 1e-4 leaves 1e-9 of rounding
+        assert np.allclose(wander.response, h @ joint[:6, :6] @ h.T, rtol=1e-6, atol=1e-9 * sd * sd)
+
+
+@pytest.mark.parametrize("sd", [0.01, 0.1, 1.0, 10.0])
+@pytest.mark.parametrize("reach", [0.0, 1.0, 3.0])
+def test_it_stays_below_the_wander_itself(reach, sd):
+    """However the car turns: I - H K lengthens nothing, and what lasts can pass whole but not more."""
+    wander, r, slow = Wander(TAU), sd * sd * np.eye(3), 0.6 * sd * np.ones(3)
+    for n, (h, _, p) in enumerate(antenna(reach, 600, r, turning=True)):
+        wander.hear(STEP * n, h @ p @ h.T, r, slow)
+        assert np.linalg.eigvalsh(wander.response).max() <= (0.6 * sd) ** 2 * (1.0 + 1e-9)
