@@ -8,6 +8,10 @@ from msgspec import structs
 from gapless.systems.recipe import System
 from gapless.trip.recording import Array, Recording
 
+AXLE = 1.0
+"""How far the rear axle may be off its usual place where the arm is estimated [m]: turns show to a decimetre
+how far the antenna is from the axle, so a narrow prior that is a metre off would bend the arm."""
+
 
 def lever_arm(system: System, recording: Recording) -> Array:
     """Antenna from the IMU: the recipe's word, else the recording's, else zero.
@@ -64,4 +68,6 @@ def with_arm(system: System, value: Array, sd: Array | None = None) -> System:
     names = system.filter.states
     names = names if "lever_arm" in names else (*names, "lever_arm")
     gnss = structs.replace(gnss, lever_arm_sd=tuple(sd.tolist()))
-    return structs.replace(system, gnss=gnss, filter=structs.replace(system.filter, states=names))
+    slip = structs.replace(system.nonholonomic, axle_sd=max(system.nonholonomic.axle_sd, AXLE))
+    widened = structs.replace(system, gnss=gnss, nonholonomic=slip)
+    return structs.replace(widened, filter=structs.replace(system.filter, states=names))
