@@ -309,6 +309,9 @@ class Navigator:
         if state.clock >= state.next_row - EPS:
             state.next_row = max(state.next_row + often, state.clock + 0.5 * often)
             source, shared = state.source, state.wander.response
+            if self.settings.arm_doubt.any():
+                c = state.belief.C_nb
+                shared = shared + c @ self.settings.arm_doubt @ c.T
             if source != "gnss" and state.manner.scale != 1.0:
                 shared = shared + (state.manner.scale - 1.0) * state.belief.P[:3, :3]
             row = state.clock, state.belief, shared, source

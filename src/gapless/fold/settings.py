@@ -56,6 +56,9 @@ class Settings:
         Standard deviation of the box's axes against the sensors' [rad].
     wander_time : float
         Correlation time of what a sensor's readings share [s].
+    arm_doubt : ndarray, shape (3, 3)
+        How far an antenna that nobody told of may be from where it is taken to be: a covariance in FRD
+        [m^2], part of every stated position.
     open_loop : bool
         Feed-forward: never correct the nominal state.
     cubature : bool
@@ -79,6 +82,7 @@ class Settings:
     lateness: float = 0.0
     misalignment: float = 0.0
     wander_time: float = 60.0
+    arm_doubt: Array = field(default_factory=lambda: np.zeros((3, 3)))
     open_loop: bool = False
     cubature: bool = False
     trail: float = 0.0

@@ -37,6 +37,10 @@ TAPE = 0.15
 one the fixes put an antenna that is 5 cm from its box 0.55 m away, and stated 0.28 m."""
 CHANCE = 1e-4
 """An arm that was told is not believed where one so far off comes by chance more seldom."""
+GUESS = 0.01
+"""The same of zero, which is a guess where nobody told anything."""
+SHORT = 240.0
+"""Where less than this was driven before it is decided [s], turns may still show an arm that was not seen."""
 LEAST = 0.1
 """Standard deviation that a found arm starts with at least [m]; else twice its own, for the filter will
 hear the same fixes again."""
@@ -103,21 +107,21 @@ class Found(NamedTuple):
         """Whether the drive showed it."""
         return bool((self.sd[:2] < SEEN).all())
 
-    def denies(self, told: Array) -> bool:
-        """Whether it can hardly be what was told.
+    def denies(self, told: Array | None) -> bool:
+        """Whether it can hardly be what was told, or zero where nobody told anything.
 
         Parameters
         ----------
-        told : ndarray, shape (3,)
+        told : ndarray, shape (3,), or None
             FRD [m].
 
         Returns
         -------
         bool
         """
-        off = self.value - told
-        distance = off @ np.linalg.solve(self.covariance + TAPE**2 * np.eye(3), off)
-        return self.seen and bool(distance > chi_square_quantile(1.0 - CHANCE, 3))
+        off, tape, chance = (self.value, 0.0, GUESS) if told is None else (self.value - told, TAPE, CHANCE)
+        distance = off @ np.linalg.solve(self.covariance + tape**2 * np.eye(3), off)
+        return self.seen and bool(distance > chi_square_quantile(1.0 - chance, 3))
 
 
 class Arm(NamedTuple):
@@ -130,11 +134,14 @@ class Arm(NamedTuple):
     sd : ndarray, shape (3,), or None
         What a state of the filter starts with [m]; None where the arm is taken as it is.
     decision : Decision
+    doubt : ndarray, shape (3, 3)
+        Of an arm that nobody told and no state looks for [m^2].
     """
 
     value: Array
     sd: Array | None
     decision: Decision
+    doubt: Array = np.zeros((3, 3))
 
     def used(self, system: System) -> System:
         """The system that navigates with it.
@@ -173,7 +180,7 @@ def settle(past: Recording, system: System, first: Callable[[System], K]) -> tup
         return known, Arm(lever_arm(system, past), None, _taken(system, past, None))
     used, found = lever_arm(system, past), _look(past, system, known)
     for _ in range(ROUNDS):
-        if found is None or not found.seen or (told is not None and not found.denies(told)):
+        if found is None or not found.denies(told):
             break
         moved, used = float(np.linalg.norm(found.value - used)), found.value
         if moved < SETTLED:
@@ -187,11 +194,11 @@ def _verdict(
     past: Recording, system: System, first: Callable[[System], K], known: K, found: Found | None
 ) -> tuple[K, Arm]:
     told, at_first = told_arm(system, past), lever_arm(system, past)
-    if found is not None and found.seen and (told is None or found.denies(told)):
+    if found is not None and found.denies(told):
         sd = np.minimum(np.maximum(2.0 * found.sd, LEAST), system.gnss.lever_arm_sd)
         return known, Arm(found.value, sd, _found(system, past, found))
     if told is None:
-        return known, Arm(at_first, np.array(system.gnss.lever_arm_sd), _doubted(system))
+        return known, _guessed(system, known, found)
     return known, Arm(at_first, None, _taken(system, past, found))
 
 
@@ -300,10 +307,18 @@ def _found(system: System, past: Recording, found: Found) -> Decision:
     return Decision(NAME, _tuple(found.value), "m", "data", evidence, float(found.sd.max()))
 
 
-def _doubted(system: System) -> Decision:
-    sd = np.array(system.gnss.lever_arm_sd)
-    evidence = (
-        f"none is stated, and the motion shows none: a state of the filter from zero ± {_metres(sd)} m, "
-        "for the fixes are better than that; state antenna_lever_arm"
-    )
-    return Decision(NAME, (0.0, 0.0, 0.0), "m", "default", evidence, float(sd.max()))
+def _guessed(system: System, known: Known, found: Found | None) -> Arm:
+    """Zero, which nobody told and nothing denies, and how far it may be off."""
+    prior, zero = np.array(system.gnss.lever_arm_sd), np.zeros(3)
+    doubt, what = np.diag(prior**2), f"and the motion shows none: zero ± {_metres(prior)} m"
+    seen = found is not None and found.seen
+    if found is not None and found.seen:
+        # axis by axis, and twice what it states: on a motorway a pass was off by 2.5 of its deviations
+        doubt = np.diag(np.minimum((2.0 * found.sd) ** 2 + found.value**2, prior**2))
+        what = f"and fixes in turns put it at {_metres(found.value)} ± {_metres(found.sd)} m, so zero may be"
+    free = not seen and known.span < SHORT
+    rest = "a state of the filter" if free else "a part of what is stated"
+    evidence = f"none is stated, {what}; its doubt is {rest}; state antenna_lever_arm"
+    most = float(np.sqrt(doubt.diagonal()).max())
+    decision = Decision(NAME, _tuple(zero), "m", "default", evidence, most)
+    return Arm(zero, prior, decision) if free else Arm(zero, None, decision, doubt)

@@ -59,7 +59,8 @@ def settings_for(
     """
     system = decided.used(system)
     built = settings(system, recording, decided.offsets, decided.mounting, decided.gyro_density, 1.0 / rate)
-    return replace(built, lateness=max(built.lateness, lateness))
+    doubt = built.arm_doubt if decided.arm is None else decided.arm.doubt
+    return replace(built, lateness=max(built.lateness, lateness), arm_doubt=doubt)
 
 
 def navigator_for(

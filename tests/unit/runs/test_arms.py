@@ -4,8 +4,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from msgspec import structs
 
 from gapless.evaluation import score
+from gapless.runs import arms
 from gapless.runs.decide import decide
 from gapless.runs.fuse import fuse
 from gapless.simulate import Receiver, simulate
@@ -91,19 +93,24 @@ def test_what_the_road_does_not_show_is_doubted():
     assert score(solution, log).aided.coverage > 0.9
 
 
+def test_a_long_road_that_shows_nothing_keeps_zero_and_says_how_far_it_may_be_off(monkeypatch):
+    monkeypatch.setattr(arms, "SHORT", 0.0)
+    log = told(drive("highway", 110.0), None)
+    decided = decide(log, TIMED)
+    assert "lever_arm" not in decided.used(TIMED).filter.states
+    solution = fuse(log, TIMED, decided=decided)
+    assert (solution.trajectory.sd[-1, :2] > 0.5).all()
+    assert score(solution, log).aided.coverage > 0.9  # of an antenna 2.5 m away, where 1.5 m is a deviation
+
+
 def test_a_receiver_of_metres_has_no_word_on_it():
     log = told(drive(receiver=Receiver(), seconds=100.0), None)
     decided = decide(log, System())
-    assert decided.used(System()) == replace_nothing(decided)
+    assert "lever_arm" not in decided.used(System()).filter.states
+    assert not decided.arm.doubt.any()
     assert decision(decided).evidence == "none is stated; taken as zero"
 
 
-def replace_nothing(decided):
-    return with_arm(System(), decided.arm.value)
-
-
 def test_a_recipe_that_looks_for_it_itself_is_left_alone(city):
-    from msgspec import structs
-
     free = structs.replace(TIMED, filter=structs.replace(TIMED.filter, states=("lever_arm",)))
     assert decide(city, free).used(free) is free
