@@ -122,11 +122,8 @@ def _denied(state: State, time: float, z: Array) -> bool:
 def _looked_at(belief: Belief, h: Array) -> tuple[Array, int]:
     """Covariance of the three states that a fix looks at, and its row length.
 
-    They are those of the position, as near as a known lever arm's attitude allows. With a lever arm that is
-    a state they are the antenna's: the box's alone may be far less certain than what is seen.
+    They are the antenna's: the box's alone may be far less certain than what is seen.
     """
-    if "lever_arm" not in belief.layout:
-        return belief.p, ROW
     return np.ascontiguousarray(h @ belief.P @ h.T).ravel(), len(h)
 
 

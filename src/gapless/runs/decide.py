@@ -8,15 +8,15 @@ from typing import NamedTuple
 import numpy as np
 from msgspec import structs
 
-from gapless import earth
-from gapless.alignment.clock import Curve, Offset, offset, path_curve, velocity_curve
+from gapless.alignment.clock import Curve, Offset, offset, led, path_curve, swinging, velocity_curve, way
+from gapless.alignment.shift import Shift, shift
 from gapless.fold.feed import events
 from gapless.fold.navigator import Navigator
 from gapless.runs.clocks import Clocks, base_offset, believed, clock_decision
 from gapless.runs.prepare import graded
 from gapless.scenarios import Outage
 from gapless.sensors.vibration import gyro_density
-from gapless.systems.build import budget, settings, stamps
+from gapless.systems.build import budget, lever_arm, settings, stamps
 from gapless.systems.learning import BridgeUse
 from gapless.systems.recipe import Adaptation, RehearsalUse, System
 from gapless.trip.recording import Array, Recording, Trajectory
@@ -147,6 +147,7 @@ class _FirstPass:
         self.base = base_offset(past, self.given)
         self.offsets = {"position": self.base, "velocity": self.base, "odometer": 0.0} | self.given
         self.found: dict[str, Offset] = {}
+        self.shifts: dict[str, Shift] = {}
         self.mounting = _given_mounting(system)
         self.span = 0.0
         self.learned = False
@@ -201,22 +202,42 @@ class _FirstPass:
 
     def _estimates(self, path: Trajectory, blocks: dict[str, Array]) -> dict[str, Offset]:
         gnss, odometer, base = self.past.gnss, self.past.odometer, self.base
+        arm = lever_arm(self.system, self.past)
         time, found = gnss.time + base, {}
         fixed = np.isfinite(gnss.lla).all(axis=1)
         heard = np.isfinite(gnss.v_n).all(axis=1)
         if "velocity" not in self.given and heard.any():
-            curve = velocity_curve(path, blocks["accel_bias"], self.past.imu)
-            found["velocity"] = offset(curve, time[heard], gnss.v_n[heard, :2], 1).later(base)
+            curve = swinging(velocity_curve(path, blocks["accel_bias"], self.past.imu), path, arm, 1)
+            found["velocity"] = self._fine(
+                "velocity", offset(curve, time[heard], gnss.v_n[heard, :2], 1), curve, time[heard], gnss.v_n[heard, :2], 1, True
+            ).later(base)
         if "position" not in self.given and fixed.any():
-            here = earth.lla_to_ned(gnss.lla[fixed], gnss.lla[fixed][0])[:, :2]
+            here = way(gnss.lla[fixed])
             windows = tuple(sorted({min(w, self.span) for w in WINDOWS}))
-            found["position"] = offset(
-                path_curve(path), time[fixed], here, 1, windows=windows, correlation=5.0
+            if heard.any():
+                felt = velocity_curve(path, blocks["accel_bias"], self.past.imu)
+                swung = swinging(felt, path, arm, 1)
+                late = found["velocity"].value if "velocity" in found else self.given["velocity"]
+                curve = led(felt, swung, gnss.time[heard] + late, gnss.v_n[heard, :2])
+            else:
+                curve = path_curve(path)
+            curve = swinging(curve, path, arm, 0)
+            found["position"] = self._fine(
+                "position", offset(curve, time[fixed], here, 1, windows=windows, correlation=5.0), curve, time[fixed], here, 0
             ).later(base)
         if odometer is not None and "odometer" not in self.given:
             speed = np.hypot(path.v_n[:, 0], path.v_n[:, 1])[:, None]
             found["odometer"] = offset(Curve(path.time, speed), odometer.time, odometer.speed[:, None], 1)
         return found
+
+    def _fine(self, channel: str, coarse: Offset, curve: Curve, time: Array, value: Array, degree: int, felt: bool = False) -> Offset:
+        if not np.isfinite(coarse.sd):
+            return coarse
+        finer = shift(curve, time, value, coarse.value, degree, felt)
+        if finer is None:
+            return coarse
+        self.shifts[channel] = finer
+        return coarse._replace(value=finer.value, sd=finer.sd)
 
     def _learn_mounting(self, blocks: dict[str, Array], sds: dict[str, Array]) -> None:
         if "mounting" not in blocks or self._mounting_given():
