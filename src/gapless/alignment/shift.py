@@ -13,6 +13,7 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from gapless.alignment.clock import Curve
+from gapless.filters.whiten import whiten
 from gapless.trip.recording import Array
 
 BIN: Final = 1.0
@@ -175,18 +176,14 @@ def _solve(
     d = blocks[0].left.shape[1]
     for block, extra in zip(blocks, spare, strict=True):
         t = block.time
-        apart = np.abs(t[:, None] - t[None, :])
-        slow = ratio**2 * np.exp(-apart / LASTS)
-        slow += walk**2 * (np.minimum(t[:, None], t[None, :]) - t[0])
         own = np.vander((t - t.mean()) / max(np.ptp(t), 1.0), degree + 1)
-        low = np.linalg.cholesky(slow + np.diag(extra))
-        logs += 2.0 * d * np.log(np.diag(low)).sum()
         columns = [own]
         for axis in range(d):
             rate = block.rate[:, axis]
             columns += [block.left[:, axis], rate, rate * (t - middle)]
             columns += [block.scaled[:, axis], block.turned[:, axis]] if felt else []
-        white = np.linalg.solve(low, np.column_stack(columns))
+        white, log_det = whiten(t, extra, ratio, LASTS, walk, np.column_stack(columns))
+        logs += d * log_det
         q, r = np.linalg.qr(white[:, : degree + 1])
         logs += 2.0 * d * np.log(np.abs(np.diag(r))).sum()
         white = white[:, degree + 1 :]

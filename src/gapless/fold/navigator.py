@@ -9,6 +9,7 @@ import numpy as np
 
 from gapless.bridges.base import Bridge
 from gapless.filters.consider import Wander
+from gapless.filters.stamp_doubt import StampDoubt
 from gapless.fold.assimilate import assimilate
 from gapless.fold.begin import begin
 from gapless.fold.journal import Journal
@@ -59,7 +60,9 @@ class Navigator:
         rules = {kind: rule.copy() for kind, rule in settings.adaptation.items()}
         aligner = settings.aligner.copy()
         manner = settings.manner
-        self._state = State(belief, rules, constraints, bridges, aligner, wander, manner.noise, manner)
+        self._state = State(
+            belief, rules, constraints, bridges, aligner, wander, StampDoubt(), manner.noise, manner
+        )
         self._past = Past(settings.lateness)
         self._propagate = propagate_points if settings.cubature else at.propagate
         self.dropped = 0
@@ -308,7 +311,8 @@ class Navigator:
         state, often = self._state, self.settings.row
         if state.clock >= state.next_row - EPS:
             state.next_row = max(state.next_row + often, state.clock + 0.5 * often)
-            source, shared = state.source, state.wander.response
+            source = state.source
+            shared = state.wander.response + state.stamps.stated(self.settings.doubt)
             if source != "gnss" and state.manner.scale != 1.0:
                 shared = shared + (state.manner.scale - 1.0) * state.belief.P[:3, :3]
             row = state.clock, state.belief, shared, source

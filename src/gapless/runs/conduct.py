@@ -57,7 +57,15 @@ def settings_for(
     -------
     Settings
     """
-    built = settings(system, recording, decided.offsets, decided.mounting, decided.gyro_density, 1.0 / rate)
+    built = settings(
+        system,
+        recording,
+        decided.offsets,
+        decided.mounting,
+        decided.gyro_density,
+        1.0 / rate,
+        decided.doubt,
+    )
     return replace(built, lateness=max(built.lateness, lateness))
 
 

@@ -10,9 +10,10 @@ from msgspec import structs
 
 from gapless.alignment.clock import Curve, Offset, offset, led, path_curve, swinging, velocity_curve, way
 from gapless.alignment.shift import Shift, shift
+from gapless.filters.stamp_doubt import Doubt
 from gapless.fold.feed import events
 from gapless.fold.navigator import Navigator
-from gapless.runs.clocks import Clocks, base_offset, believed, clock_decision
+from gapless.runs.clocks import Clocks, base_offset, believed, clock_decision, doubt, vague_notes
 from gapless.runs.prepare import graded
 from gapless.scenarios import Outage
 from gapless.sensors.vibration import gyro_density
@@ -36,9 +37,10 @@ WINDOWS = (100.0, 200.0)
 """Windows in which a path is compared with positions [s]: long, for positions lag in their changes."""
 LOOSE = 30.0
 """Standard deviation of positions in a first pass that has velocities [m]."""
-SETTLED = 0.008
-"""Passes end when no offset moves by more [s], or by more than two of its standard deviations: each
-goes about two thirds of what is left."""
+SETTLED = 0.003
+"""Passes end when no offset moves by more [s], or by more than half its standard deviation."""
+HONEST = {"position": 1.3, "velocity": 1.6}
+"""Deviations over those of least squares, as simulated drives have them: curves have errors of their own."""
 
 
 class Mounting(NamedTuple):
@@ -68,6 +70,10 @@ class Decided:
     decisions : tuple of Decision
     span : float
         Seconds that the first pass could navigate; 0 where the past held too little.
+    doubt : Doubt
+        Of the receiver's stamps.
+    notes : tuple of str
+        Sentences that a user must read.
     """
 
     offsets: dict[str, float]
@@ -75,6 +81,8 @@ class Decided:
     gyro_density: float
     decisions: tuple[Decision, ...]
     span: float
+    doubt: Doubt = Doubt()
+    notes: tuple[str, ...] = ()
 
 
 def decide(recording: Recording, system: System, horizon: float = np.inf) -> Decided:
@@ -100,7 +108,16 @@ def decide(recording: Recording, system: System, horizon: float = np.inf) -> Dec
         *passes.clock_decisions(),
         *passes.mounting_decisions(),
     )
-    return Decided(passes.offsets, passes.mounting, passes.density, decisions, passes.span)
+    clocks = passes.clocks
+    return Decided(
+        passes.offsets,
+        passes.mounting,
+        passes.density,
+        decisions,
+        passes.span,
+        Doubt(*doubt(clocks)),
+        vague_notes(clocks) if passes.span else (),
+    )
 
 
 def decide_before(open_sky: Recording, system: System, outages: tuple[Outage, ...]) -> Decided:
@@ -192,12 +209,12 @@ class _FirstPass:
         settled, before = True, dict(self.offsets)
         self.found = self._estimates(path, blocks)
         for channel, estimate in self.found.items():
-            self.offsets[channel] = believed(channel, self._clocks).value
-            settled &= abs(self.offsets[channel] - before[channel]) < max(SETTLED, 2.0 * estimate.sd)
+            self.offsets[channel] = believed(channel, self.clocks).value
+            settled &= abs(self.offsets[channel] - before[channel]) < max(SETTLED, 0.5 * estimate.sd)
         return settled
 
     @property
-    def _clocks(self) -> Clocks:
+    def clocks(self) -> Clocks:
         return Clocks(self.given, self.base, self.found)
 
     def _estimates(self, path: Trajectory, blocks: dict[str, Array]) -> dict[str, Offset]:
@@ -206,38 +223,37 @@ class _FirstPass:
         time, found = gnss.time + base, {}
         fixed = np.isfinite(gnss.lla).all(axis=1)
         heard = np.isfinite(gnss.v_n).all(axis=1)
-        if "velocity" not in self.given and heard.any():
-            curve = swinging(velocity_curve(path, blocks["accel_bias"], self.past.imu), path, arm, 1)
-            found["velocity"] = self._fine(
-                "velocity", offset(curve, time[heard], gnss.v_n[heard, :2], 1), curve, time[heard], gnss.v_n[heard, :2], 1, True
-            ).later(base)
+        if heard.any():
+            felt = velocity_curve(path, blocks["accel_bias"], self.past.imu)
+            curve, v = swinging(felt, path, arm, 1), gnss.v_n[heard, :2]
+            late = self.given.get("velocity", self.offsets["velocity"]) - base
+            if "velocity" not in self.given:
+                coarse = offset(curve, time[heard], v, 1)
+                found["velocity"] = self._fine("velocity", coarse, curve, time[heard], v, 1).later(base)
+                late = found["velocity"].value - base if np.isfinite(found["velocity"].sd) else late
+            along = led(felt, curve, time[heard] + late, v)
+        else:
+            along = path_curve(path)
         if "position" not in self.given and fixed.any():
-            here = way(gnss.lla[fixed])
+            here, curve = way(gnss.lla[fixed]), swinging(along, path, arm, 0)
             windows = tuple(sorted({min(w, self.span) for w in WINDOWS}))
-            if heard.any():
-                felt = velocity_curve(path, blocks["accel_bias"], self.past.imu)
-                swung = swinging(felt, path, arm, 1)
-                late = found["velocity"].value if "velocity" in found else self.given["velocity"]
-                curve = led(felt, swung, gnss.time[heard] + late, gnss.v_n[heard, :2])
-            else:
-                curve = path_curve(path)
-            curve = swinging(curve, path, arm, 0)
-            found["position"] = self._fine(
-                "position", offset(curve, time[fixed], here, 1, windows=windows, correlation=5.0), curve, time[fixed], here, 0
-            ).later(base)
+            coarse = offset(curve, time[fixed], here, 1, windows=windows, correlation=5.0)
+            found["position"] = self._fine("position", coarse, curve, time[fixed], here, 0).later(base)
         if odometer is not None and "odometer" not in self.given:
             speed = np.hypot(path.v_n[:, 0], path.v_n[:, 1])[:, None]
             found["odometer"] = offset(Curve(path.time, speed), odometer.time, odometer.speed[:, None], 1)
         return found
 
-    def _fine(self, channel: str, coarse: Offset, curve: Curve, time: Array, value: Array, degree: int, felt: bool = False) -> Offset:
-        if not np.isfinite(coarse.sd):
+    def _fine(
+        self, channel: str, coarse: Offset, curve: Curve, time: Array, value: Array, degree: int
+    ) -> Offset:
+        """What generalised least squares make of a scanned offset; disagreement of passes is doubt too."""
+        finer = shift(curve, time, value, coarse.value, degree, channel == "velocity")
+        if finer is None or not np.isfinite(coarse.sd):
             return coarse
-        finer = shift(curve, time, value, coarse.value, degree, felt)
-        if finer is None:
-            return coarse
-        self.shifts[channel] = finer
-        return coarse._replace(value=finer.value, sd=finer.sd)
+        before, self.shifts[channel] = self.shifts.get(channel), finer
+        moved = 0.0 if before is None else finer.value - before.value
+        return coarse._replace(value=finer.value, sd=float(np.hypot(HONEST[channel] * finer.sd, moved)))
 
     def _learn_mounting(self, blocks: dict[str, Array], sds: dict[str, Array]) -> None:
         if "mounting" not in blocks or self._mounting_given():
@@ -255,7 +271,7 @@ class _FirstPass:
         present = {"position": True, "velocity": self.past.gnss.has_velocity}
         present["odometer"] = self.past.odometer is not None
         chosen = [c for c in CHANNELS if present[c]]
-        return [clock_decision(c, self._clocks, self.span) for c in chosen]
+        return [clock_decision(c, self.clocks, self.span) for c in chosen]
 
     def mounting_decisions(self) -> list[Decision]:
         """Pitch and yaw of the car's forward axis in the box."""

@@ -10,6 +10,7 @@ import numpy as np
 from gapless.alignment.coarse import Aligner
 from gapless.errors import ConfigError
 from gapless.filters.adaptation.registry import KINDS, RULES, chain
+from gapless.filters.stamp_doubt import Doubt
 from gapless.fold.settings import Settings
 from gapless.inertial.layout import Layout
 from gapless.measurements.base import Constraint, Sensor
@@ -36,6 +37,7 @@ def settings(
     mounting: tuple[Array, Array],
     gyro_density: float = 0.0,
     row: float = 0.1,
+    doubt: Doubt = Doubt(),
 ) -> Settings:
     """Settings of a navigator.
 
@@ -52,6 +54,8 @@ def settings(
         What the log's gyros show of vibration [rad/sqrt(s)].
     row : float
         Time between journal rows [s].
+    doubt : Doubt
+        Of the receiver's stamps.
 
     Returns
     -------
@@ -96,6 +100,7 @@ def settings(
         misalignment=float(imu["misalignment"]),
         wander_time=system.gnss.wander_time,
         cubature=system.filter.moments == "cubature",
+        doubt=doubt,
         open_loop=system.filter.correction == "feedforward",
     )
 
