@@ -288,18 +288,32 @@ def led(curve: Curve, antenna: Curve, time: Array, value: Array) -> Curve:
     v = np.empty_like(curve.value)
     for axis in range(value.shape[1]):
         more = value[:, axis] - np.interp(time, antenna.time, antenna.value[:, axis])
-        v[:, axis] = curve.value[:, axis] + np.interp(curve.time, knots, _smooth(time, more, knots))
+        v[:, axis] = curve.value[:, axis] + np.interp(curve.time, knots, smooth(time, more, knots, NEAR))
     step = 0.5 * (v[1:] + v[:-1]) * np.diff(curve.time)[:, None]
     return Curve(curve.time, np.concatenate([np.zeros((1, v.shape[1])), np.cumsum(step, axis=0)]))
 
 
-def _smooth(time: Array, value: Array, knots: Array) -> Array:
-    """Local lines through readings, at some times."""
+def smooth(time: Array, value: Array, knots: Array, width: float) -> Array:
+    """Local lines through readings, at some times.
+
+    Parameters
+    ----------
+    time, value : ndarray, shape (k,)
+    knots : ndarray, shape (n,)
+        Increasing [s].
+    width : float
+        Deviation of the weight about a knot [s].
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        Where there is no reading near, as at the knot before.
+    """
     found = np.zeros(len(knots))
     for k, at in enumerate(knots):
-        a, b = np.searchsorted(time, [at - 3.0 * NEAR, at + 3.0 * NEAR])
+        a, b = np.searchsorted(time, [at - 3.0 * width, at + 3.0 * width])
         u, y = time[a:b] - at, value[a:b]
-        w = np.exp(-0.5 * (u / NEAR) ** 2)
+        w = np.exp(-0.5 * (u / width) ** 2)
         s0, s1, s2 = w.sum(), w @ u, w @ u**2
         d = s0 * s2 - s1**2
         if d > 1e-6:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import Any, Self
 
 import numpy as np
@@ -105,6 +106,18 @@ class Navigator:
         state.manner, state.noise = manner, manner.noise
         for name, like in manner.constraints.items():
             state.constraints[name] = state.constraints[name].tuned(like)
+
+    def trust(self, settings: Settings) -> None:
+        """Go on with what was found of the receiver's stamps meanwhile.
+
+        Parameters
+        ----------
+        settings : Settings
+            Of these, how uneven stamps are and what is not known of their clock.
+        """
+        heard = {name: settings.sensors[name] for name in ("position", "velocity") if name in settings.sensors}
+        sensors = {**self.settings.sensors, **heard}
+        self.settings = replace(self.settings, sensors=sensors, doubt=settings.doubt)
 
     def step(self, event: Event) -> None:
         """Take in one event.

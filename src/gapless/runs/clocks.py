@@ -9,7 +9,9 @@ from typing import NamedTuple
 import numpy as np
 
 from gapless.alignment.clock import Offset
+from gapless.alignment.shift import Shift
 from gapless.alignment.turns import far_off, turns
+from gapless.alignment.uneven import Jitter
 from gapless.errors import RecordingError
 from gapless.trip.recording import Recording
 from gapless.trip.solution import Decision
@@ -22,6 +24,8 @@ ONE_CLOCK = 0.003
 """By how much stamps of one clock are apart, as a standard deviation [s]: the search is no better."""
 OFTEN = 0.7
 """How often a receiver stamps its positions and velocities by one clock, before its log is looked at."""
+NOTED = 0.02
+"""Stamps less uneven than this are as expected [s]."""
 MOST = 10.0
 """No receiver is later than this [s]; stamps that are, are wrong."""
 OTHER = {"position": "velocity", "velocity": "position"}
@@ -196,22 +200,94 @@ def clock_decision(channel: str, clocks: Clocks, span: float) -> Decision:
     return Decision(name, value, "s", "data", evidence, sd)
 
 
-def vague_notes(clocks: Clocks) -> tuple[str, ...]:
-    """What a user must read of clocks that could not be found.
+def parting(shifts: tuple[Shift, ...]) -> tuple[float, float, float]:
+    """Drift of a receiver's clock, from all that it stamps.
+
+    Parameters
+    ----------
+    shifts : tuple of Shift
+        At least one.
+
+    Returns
+    -------
+    drift, sd : float
+        Seconds in a second. Deviations of least squares are doubled: simulated drives have them at up to
+        twice as much.
+    since : float
+        The time for which offsets were found [s].
+    """
+    weights = np.array([s.drift_sd**-2.0 for s in shifts])
+    drift = float(weights @ [s.drift for s in shifts] / weights.sum())
+    return drift, 2.0 / math.sqrt(weights.sum()), max(shifts, key=lambda s: 1.0 / s.sd).middle
+
+
+def drift_decision(drift: float, sd: float, span: float) -> Decision:
+    """That the receiver's clock and the IMU's part.
+
+    Parameters
+    ----------
+    drift, sd : float
+        Seconds in a second.
+    span : float
+        Seconds that were looked at.
+
+    Returns
+    -------
+    Decision
+    """
+    evidence = f"over {span:.0f} s the offset changes by {drift * span:+.3f} s; stamps are corrected by it"
+    return Decision("clock drift", round(1e6 * drift, 1), "ppm", "data", evidence, 1e6 * sd)
+
+
+def jitter_decisions(jitter: Jitter) -> list[Decision]:
+    """How uneven stamps are, where it is clear.
+
+    Parameters
+    ----------
+    jitter : Jitter
+
+    Returns
+    -------
+    list of Decision
+        None or one.
+    """
+    if not jitter.white and not jitter.lasting:
+        return []
+    evidence = (
+        f"{jitter.readings} positions are off by {jitter.along:.3f} s of driving along the track and by "
+        f"{jitter.across:.3f} across it; {jitter.white:.3f} s from one to the next, {jitter.lasting:.3f} s over some seconds"
+    )
+    whole = math.hypot(jitter.white, jitter.lasting)
+    return [Decision("jitter of stamps", round(whole, 3), "s", "data", evidence)]
+
+
+def clock_notes(clocks: Clocks, jitter: Jitter, drift: float) -> tuple[str, ...]:
+    """What a user must read of clocks.
 
     Parameters
     ----------
     clocks : Clocks
+    jitter : Jitter
+    drift : float
+        Of the receiver's clock [s/s]; 0 where none was found.
 
     Returns
     -------
     tuple of str
-        None or one.
     """
+    notes = []
     most = math.hypot(*doubt(clocks))
-    if most < VAGUE:
-        return ()
-    return (
-        f"the receiver's clock is known to {most:.2f} s only: positions are as wrong as the car drives in that time, "
-        "and are stated so; if the clock is known, say --clock position=... --clock velocity=...",
-    )
+    if most >= VAGUE:
+        notes.append(
+            f"the receiver's clock is known to {most:.2f} s only; positions are stated to be as uncertain as the "
+            "car drives far in that time; give the offsets if they are known (--clock position=... --clock velocity=...)"
+        )
+    if drift:
+        notes.append(f"the receiver's clock and the IMU's part by {1e6 * drift:.0f} ppm; its stamps are corrected")
+    uneven = math.hypot(jitter.white, jitter.lasting)
+    if uneven > NOTED:
+        notes.append(
+            f"the receiver's stamps are uneven by {uneven:.3f} s; the error is stated, but stamp fixes by the "
+            "receiver's own time and it is gone"
+        )
+    return tuple(notes)

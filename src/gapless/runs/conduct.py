@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 
+from msgspec import structs
+
 from gapless.errors import ConfigError
 from gapless.fold.manner import Manner
 from gapless.fold.navigator import Navigator
@@ -57,8 +59,9 @@ def settings_for(
     -------
     Settings
     """
+    use = system.gnss
     built = settings(
-        system,
+        structs.replace(system, gnss=structs.replace(use, jitter=max(use.jitter, decided.jitter))),
         recording,
         decided.offsets,
         decided.mounting,

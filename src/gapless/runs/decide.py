@@ -10,10 +10,11 @@ from msgspec import structs
 
 from gapless.alignment.clock import Curve, Offset, offset, led, path_curve, swinging, velocity_curve, way
 from gapless.alignment.shift import Shift, shift
+from gapless.alignment.uneven import Jitter, uneven
 from gapless.filters.stamp_doubt import Doubt
-from gapless.fold.feed import events
+from gapless.fold.feed import DRIFT, SINCE, events, parted
 from gapless.fold.navigator import Navigator
-from gapless.runs.clocks import Clocks, base_offset, believed, clock_decision, doubt, vague_notes
+from gapless.runs.clocks import Clocks, base_offset, believed, clock_decision, clock_notes, doubt, drift_decision, jitter_decisions, parting
 from gapless.runs.prepare import graded
 from gapless.scenarios import Outage
 from gapless.sensors.vibration import gyro_density
@@ -39,6 +40,8 @@ LOOSE = 30.0
 """Standard deviation of positions in a first pass that has velocities [m]."""
 SETTLED = 0.003
 """Passes end when no offset moves by more [s], or by more than half its standard deviation."""
+PARTING = 4.0
+"""Clocks part where their drift is so many deviations."""
 HONEST = {"position": 1.3, "velocity": 1.6}
 """Deviations over those of least squares, as simulated drives have them: curves have errors of their own."""
 
@@ -74,6 +77,8 @@ class Decided:
         Of the receiver's stamps.
     notes : tuple of str
         Sentences that a user must read.
+    jitter : float
+        Of the receiver's stamps from reading to reading, where it is clear [s]; else 0.
     """
 
     offsets: dict[str, float]
@@ -83,6 +88,7 @@ class Decided:
     span: float
     doubt: Doubt = Doubt()
     notes: tuple[str, ...] = ()
+    jitter: float = 0.0
 
 
 def decide(recording: Recording, system: System, horizon: float = np.inf) -> Decided:
@@ -115,8 +121,9 @@ def decide(recording: Recording, system: System, horizon: float = np.inf) -> Dec
         passes.density,
         decisions,
         passes.span,
-        Doubt(*doubt(clocks)),
-        vague_notes(clocks) if passes.span else (),
+        Doubt(*doubt(clocks), passes.jitter.lasting),
+        clock_notes(clocks, passes.jitter, passes.offsets.get(DRIFT, 0.0)) if passes.span else (),
+        passes.jitter.white,
     )
 
 
@@ -165,6 +172,7 @@ class _FirstPass:
         self.offsets = {"position": self.base, "velocity": self.base, "odometer": 0.0} | self.given
         self.found: dict[str, Offset] = {}
         self.shifts: dict[str, Shift] = {}
+        self.jitter, self.drift_sd = Jitter(), 0.0
         self.mounting = _given_mounting(system)
         self.span = 0.0
         self.learned = False
@@ -173,13 +181,29 @@ class _FirstPass:
         self.enough = ENOUGH if past.odometer is None else np.inf
 
     def run(self) -> None:
-        """Up to six passes; each starts from the offsets of the one before."""
-        for jitter in JITTER:
+        """Up to six passes; each starts from the offsets of the one before. More, if the clocks part."""
+        for k, jitter in enumerate((*JITTER, *JITTER[2:])):
             navigator = self._navigate(jitter)
             if len(navigator.journal.times) < 150:  # half a minute
                 return
-            if self._learn(navigator):
+            settled = self._learn(navigator)
+            if (settled or k + 1 == len(JITTER)) and not self._part():
                 return
+
+    def _part(self) -> bool:
+        """Whether the clocks were just found to part."""
+        if DRIFT in self.offsets or self.given or not self.shifts:
+            return False
+        drift, sd, since = parting(tuple(self.shifts.values()))
+        if abs(drift) < PARTING * sd or abs(drift) * 0.5 * self.span < believed(*self._sharpest).sd:
+            return False
+        self.offsets |= {DRIFT: drift, SINCE: since}
+        self.drift_sd = sd
+        return True
+
+    @property
+    def _sharpest(self) -> tuple[str, Clocks]:
+        return min(self.shifts, key=lambda c: self.shifts[c].sd), self.clocks
 
     def _navigate(self, jitter: float) -> Navigator:
         use = self.system.gnss
@@ -220,7 +244,7 @@ class _FirstPass:
     def _estimates(self, path: Trajectory, blocks: dict[str, Array]) -> dict[str, Offset]:
         gnss, odometer, base = self.past.gnss, self.past.odometer, self.base
         arm = lever_arm(self.system, self.past)
-        time, found = gnss.time + base, {}
+        time, found = gnss.time + base + parted(gnss.time, self.offsets), {}
         fixed = np.isfinite(gnss.lla).all(axis=1)
         heard = np.isfinite(gnss.v_n).all(axis=1)
         if heard.any():
@@ -239,6 +263,8 @@ class _FirstPass:
             windows = tuple(sorted({min(w, self.span) for w in WINDOWS}))
             coarse = offset(curve, time[fixed], here, 1, windows=windows, correlation=5.0)
             found["position"] = self._fine("position", coarse, curve, time[fixed], here, 0).later(base)
+            if np.isfinite(found["position"].sd):
+                self.jitter = uneven(curve, time[fixed] + found["position"].value - base, here)
         if odometer is not None and "odometer" not in self.given:
             speed = np.hypot(path.v_n[:, 0], path.v_n[:, 1])[:, None]
             found["odometer"] = offset(Curve(path.time, speed), odometer.time, odometer.speed[:, None], 1)
@@ -271,7 +297,10 @@ class _FirstPass:
         present = {"position": True, "velocity": self.past.gnss.has_velocity}
         present["odometer"] = self.past.odometer is not None
         chosen = [c for c in CHANNELS if present[c]]
-        return [clock_decision(c, self.clocks, self.span) for c in chosen]
+        told = [clock_decision(c, self.clocks, self.span) for c in chosen]
+        if drift := self.offsets.get(DRIFT, 0.0):
+            told.append(drift_decision(drift, self.drift_sd, self.span))
+        return [*told, *jitter_decisions(self.jitter)]
 
     def mounting_decisions(self) -> list[Decision]:
         """Pitch and yaw of the car's forward axis in the box."""

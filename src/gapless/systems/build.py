@@ -64,7 +64,7 @@ def settings(
     imu = budget(system.imu, gyro_density)
     names = states(system, recording)
     angles, angle_sd = mounting
-    sensors, lateness = _sensors(system, recording, angles), _lateness(stamps(system, offsets))
+    sensors, lateness = _sensors(system, recording, angles), _lateness(stamps(system, offsets), recording)
     rules = system.adaptation
     parts = [(part.bridge, part.learner) for part in (system, *candidates(system))]
     spoken = tuple(b for use, who in parts for b in bridges(use, who, sensors, lateness))
@@ -148,9 +148,14 @@ def stamps(system: System, offsets: Mapping[str, float]) -> dict[str, float]:
     return {**offsets, "velocity": offsets.get("velocity", 0.0) + 0.5 * system.gnss.velocity_averaging}
 
 
-def _lateness(offsets: Mapping[str, float]) -> float:
+def _lateness(offsets: Mapping[str, float], recording: Recording) -> float:
     """How late readings arrive, with some slack; 0 where none does."""
-    most = max(0.0, *(-late for late in offsets.values()))
+    more = offsets.get("drift", 0.0) * (recording.gnss.time[[0, -1]] - offsets.get("since", 0.0))
+    most = max(
+        0.0,
+        *(-late for name, late in offsets.items() if name == "odometer"),
+        *(-late - m for name, late in offsets.items() if name in ("position", "velocity") for m in more),
+    )
     return most + 0.05 if most > 0.0 else 0.0
 
 
