@@ -18,14 +18,19 @@ from gapless.trip.recording import Array
 
 BIN: Final = 1.0
 """Readings closer than this are taken together [s]: their errors are hardly independent."""
-BLOCK: Final = 150.0
+BLOCK: Final = 300.0
 """Stretches of which each has a level of its own [s]."""
 LASTS: Final = 60.0
 """Correlation time of the error that wanders [s]."""
+SMOOTH: Final = 0.3
+"""Positions' wander over their white errors is taken to be no more: what a receiver's own filter makes smooth
+follows its velocities from fix to fix, and their clock."""
 _RATIOS: Final = (0.0, 0.3, 1.0, 3.0, 10.0)
 """Deviations of the wandering part over the white one that are tried."""
 _WALKS: Final = (0.0, 0.01, 0.03, 0.1, 0.3, 1.0)
 """Random walks [1/sqrt(s)] over the white deviation that are tried."""
+_SHARES: Final = (0.0, 0.25, 0.5, 0.75, 1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 16.0, 24.0, 32.0)
+"""The same, where the random walk is known."""
 _SPIKE: Final = 3.5
 """Whitened residuals beyond so many deviations count less."""
 
@@ -103,6 +108,40 @@ def shift(
     return found
 
 
+def wandering(curve: Curve, time: Array, value: Array, walk: float) -> tuple[float, float]:
+    """What of positions' errors is white, and what wanders, held against a path whose own drift is known.
+
+    Parameters
+    ----------
+    curve : Curve
+        Path on the IMU clock [m].
+    time : ndarray, shape (k,)
+        Stamps, their offset added [s].
+    value : ndarray, shape (k, 2)
+        Positions [m].
+    walk : float
+        Random walk of the path [m/sqrt(s)].
+
+    Returns
+    -------
+    white, wander : float
+        Standard deviations in one axis [m], the former of means over a second; NaN where there is too little.
+    """
+    blocks = _blocks(curve, time, value, 0.0)
+    if sum(len(b.time) for b in blocks) < 100:
+        return np.nan, np.nan
+    spare = [np.ones(len(b.time)) for b in blocks]
+    free = min(
+        (_solve(blocks, spare, 0, time[0], False, r, w) for r in _RATIOS for w in _WALKS),
+        key=lambda one: one.cost,
+    )
+    white = float(np.median(free.scales))
+    found = [(_solve(blocks, spare, 0, time[0], False, r, walk / white), r) for r in _SHARES]
+    best, ratio = min(found, key=lambda one: one[0].cost)
+    scale = float(np.median(best.scales))
+    return scale, ratio * scale
+
+
 def _blocks(curve: Curve, time: Array, value: Array, offset: float) -> list[_Block]:
     """Means of residuals and of the curve's rate in bins, by stretches without a gap of the curve."""
     at = time + offset
@@ -142,7 +181,7 @@ def _fit(blocks: list[_Block], degree: int, felt: bool) -> tuple[float, float, f
     middle = sum(float(b.time.sum()) for b in blocks) / many
     spare = [np.ones(len(b.time)) for b in blocks]
     best = min(
-        ((_solve(blocks, spare, degree, middle, felt, r, w), r, w) for r in _RATIOS for w in _WALKS),
+        ((_solve(blocks, spare, degree, middle, felt, r, w), r, w) for r in _RATIOS for w in _WALKS if felt or max(r, 8.0 * w) <= SMOOTH),
         key=lambda one: one[0].cost,
     )
     for _ in range(2):
@@ -207,5 +246,19 @@ def _solve(
     whitened = [
         np.column_stack([off[k * d + i] for i in range(d)]) / scales[k] for k in range(len(blocks))
     ]
-    sd = np.sqrt(np.diag(cov))
+    sd = np.sqrt(np.maximum(np.diag(cov), _lasting(parts, scales, off, cov, d)))
     return _Solved(cost, (float(value[0]), float(value[1])), (float(sd[0]), float(sd[1])), scales, whitened)
+
+
+def _lasting(parts: list[Array], scales: Array, off: list[Array], cov: Array, d: int) -> Array:
+    """Variances of what was fitted where residuals are not white all the same (Newey and West 1987)."""
+    middle = np.zeros_like(cov)
+    for k in range(len(scales)):
+        u = sum(
+            parts[k * d + i][:, 1:] * off[k * d + i][:, None] for i in range(d)
+        ) / scales[k] ** 2
+        reach = min(int(LASTS / BIN), len(u) - 1)
+        for lag in range(reach + 1):
+            both = u[lag:].T @ u[: len(u) - lag]
+            middle += (1.0 - lag / (reach + 1.0)) * (both + both.T) * (0.5 if lag == 0 else 1.0)
+    return np.asarray(np.diag(cov @ middle @ cov))

@@ -24,6 +24,8 @@ ONE_CLOCK = 0.003
 """By how much stamps of one clock are apart, as a standard deviation [s]: the search is no better."""
 OFTEN = 0.7
 """How often a receiver stamps its positions and velocities by one clock, before its log is looked at."""
+SYNCHRONOUS = 0.4
+"""How often a receiver's stamps are on the IMU's clock as they were logged."""
 NOTED = 0.02
 """Stamps less uneven than this are as expected [s]."""
 MOST = 10.0
@@ -109,17 +111,19 @@ def believed(channel: str, clocks: Clocks) -> Offset:
         return own._replace(value=first.value + gap, sd=math.hypot(first.sd, sd))
     if not math.isfinite(own.sd):
         return own._replace(value=near, sd=PRIOR if channel in OTHER else own.sd)
-    share = PRIOR**2 / (PRIOR**2 + own.sd**2)
-    return own._replace(value=near + share * (own.value - near), sd=own.sd * math.sqrt(share))
+    value, sd = together(own.value - near, own.sd, SYNCHRONOUS if channel in OTHER and not near else 0.0)
+    return own._replace(value=near + value, sd=sd)
 
 
-def together(gap: float, sd: float) -> tuple[float, float]:
+def together(gap: float, sd: float, often: float = OFTEN) -> tuple[float, float]:
     """What parts two stamps: nothing, if they are of one clock, or what was found.
 
     Parameters
     ----------
     gap, sd : float
         Found, and its standard deviation [s]; inf where nothing was.
+    often : float
+        Probability that they are of one clock, before it was looked.
 
     Returns
     -------
@@ -127,13 +131,13 @@ def together(gap: float, sd: float) -> tuple[float, float]:
         Mean and deviation of the mixture of both, each as likely as it explains what was found.
     """
     if not math.isfinite(sd):
-        return 0.0, math.sqrt(1.0 - OFTEN) * PRIOR
+        return 0.0, math.sqrt(1.0 - often) * PRIOR
     means, variances, logs = [], [], []
-    for share, prior in ((OFTEN, ONE_CLOCK), (1.0 - OFTEN, PRIOR)):
+    for share, prior in ((often, ONE_CLOCK), (1.0 - often, PRIOR)):
         total = prior**2 + sd**2
         means.append(gap * prior**2 / total)
         variances.append(prior**2 * sd**2 / total)
-        logs.append(math.log(share) - 0.5 * (math.log(total) + gap**2 / total))
+        logs.append(math.log(max(share, 1e-300)) - 0.5 * (math.log(total) + gap**2 / total))
     weights = [math.exp(one - max(logs)) for one in logs]
     weights = [w / sum(weights) for w in weights]
     mean = sum(w * m for w, m in zip(weights, means, strict=True))
@@ -216,9 +220,13 @@ def parting(shifts: tuple[Shift, ...]) -> tuple[float, float, float]:
     since : float
         The time for which offsets were found [s].
     """
+    clear = [s.drift / (2.0 * s.drift_sd) for s in shifts]
     weights = np.array([s.drift_sd**-2.0 for s in shifts])
-    drift = float(weights @ [s.drift for s in shifts] / weights.sum())
-    return drift, 2.0 / math.sqrt(weights.sum()), max(shifts, key=lambda s: 1.0 / s.sd).middle
+    drift, sd = float(weights @ [s.drift for s in shifts] / weights.sum()), 2.0 / math.sqrt(weights.sum())
+    agree = min(clear) * max(clear) > 0.0
+    least = min(abs(c) for c in clear)
+    since = min(shifts, key=lambda s: s.sd).middle
+    return (math.copysign(min(abs(drift), least * sd), drift) if agree else 0.0), sd, since
 
 
 def drift_decision(drift: float, sd: float, span: float) -> Decision:

@@ -60,8 +60,10 @@ def settings_for(
     Settings
     """
     use = system.gnss
+    share = use.wander if decided.wander is None else decided.wander
+    use = structs.replace(use, jitter=max(use.jitter, decided.jitter), wander=share)
     built = settings(
-        structs.replace(system, gnss=structs.replace(use, jitter=max(use.jitter, decided.jitter))),
+        structs.replace(system, gnss=use),
         recording,
         decided.offsets,
         decided.mounting,

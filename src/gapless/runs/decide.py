@@ -9,7 +9,7 @@ import numpy as np
 from msgspec import structs
 
 from gapless.alignment.clock import Curve, Offset, offset, led, path_curve, swinging, velocity_curve, way
-from gapless.alignment.shift import Shift, shift
+from gapless.alignment.shift import Shift, shift, wandering
 from gapless.alignment.uneven import Jitter, uneven
 from gapless.filters.stamp_doubt import Doubt
 from gapless.fold.feed import DRIFT, SINCE, events, parted
@@ -42,6 +42,8 @@ SETTLED = 0.003
 """Passes end when no offset moves by more [s], or by more than half its standard deviation."""
 PARTING = 4.0
 """Clocks part where their drift is so many deviations."""
+SHARES = (0.3, 1.0)
+"""Least and greatest share of a position's deviation that is taken to wander."""
 HONEST = {"position": 1.3, "velocity": 1.6}
 """Deviations over those of least squares, as simulated drives have them: curves have errors of their own."""
 
@@ -79,6 +81,8 @@ class Decided:
         Sentences that a user must read.
     jitter : float
         Of the receiver's stamps from reading to reading, where it is clear [s]; else 0.
+    wander : float, optional
+        Share of positions' stated deviations that wanders, where velocities tell it.
     """
 
     offsets: dict[str, float]
@@ -89,6 +93,7 @@ class Decided:
     doubt: Doubt = Doubt()
     notes: tuple[str, ...] = ()
     jitter: float = 0.0
+    wander: float | None = None
 
 
 def decide(recording: Recording, system: System, horizon: float = np.inf) -> Decided:
@@ -112,6 +117,7 @@ def decide(recording: Recording, system: System, horizon: float = np.inf) -> Dec
     decisions = (
         noise_decision(system, passes.density, stated=recording.grade),
         *passes.clock_decisions(),
+        *passes.wander_decisions(),
         *passes.mounting_decisions(),
     )
     clocks = passes.clocks
@@ -124,6 +130,7 @@ def decide(recording: Recording, system: System, horizon: float = np.inf) -> Dec
         Doubt(*doubt(clocks), passes.jitter.lasting),
         clock_notes(clocks, passes.jitter, passes.offsets.get(DRIFT, 0.0)) if passes.span else (),
         passes.jitter.white,
+        passes.share,
     )
 
 
@@ -172,7 +179,7 @@ class _FirstPass:
         self.offsets = {"position": self.base, "velocity": self.base, "odometer": 0.0} | self.given
         self.found: dict[str, Offset] = {}
         self.shifts: dict[str, Shift] = {}
-        self.jitter, self.drift_sd = Jitter(), 0.0
+        self.jitter, self.drift_sd, self.errors = Jitter(), 0.0, (np.nan, np.nan)
         self.mounting = _given_mounting(system)
         self.span = 0.0
         self.learned = False
@@ -192,18 +199,15 @@ class _FirstPass:
 
     def _part(self) -> bool:
         """Whether the clocks were just found to part."""
-        if DRIFT in self.offsets or self.given or not self.shifts:
+        if self.given or not self.shifts:
             return False
-        drift, sd, since = parting(tuple(self.shifts.values()))
-        if abs(drift) < PARTING * sd or abs(drift) * 0.5 * self.span < believed(*self._sharpest).sd:
+        drift, self.drift_sd, since = parting(tuple(self.shifts.values()))
+        least = PARTING if DRIFT not in self.offsets else 1.0
+        if abs(drift) < least * self.drift_sd or abs(drift) * self.span < SETTLED:
             return False
-        self.offsets |= {DRIFT: drift, SINCE: since}
-        self.drift_sd = sd
+        since = self.offsets.get(SINCE, since)
+        self.offsets |= {DRIFT: self.offsets.get(DRIFT, 0.0) + drift, SINCE: since}
         return True
-
-    @property
-    def _sharpest(self) -> tuple[str, Clocks]:
-        return min(self.shifts, key=lambda c: self.shifts[c].sd), self.clocks
 
     def _navigate(self, jitter: float) -> Navigator:
         use = self.system.gnss
@@ -264,7 +268,10 @@ class _FirstPass:
             coarse = offset(curve, time[fixed], here, 1, windows=windows, correlation=5.0)
             found["position"] = self._fine("position", coarse, curve, time[fixed], here, 0).later(base)
             if np.isfinite(found["position"].sd):
-                self.jitter = uneven(curve, time[fixed] + found["position"].value - base, here)
+                held = time[fixed] + found["position"].value - base
+                self.jitter = uneven(curve, held, here)
+                if heard.any() and "velocity" in self.shifts:
+                    self.errors = wandering(curve, held, here, self.shifts["velocity"].white)
         if odometer is not None and "odometer" not in self.given:
             speed = np.hypot(path.v_n[:, 0], path.v_n[:, 1])[:, None]
             found["odometer"] = offset(Curve(path.time, speed), odometer.time, odometer.speed[:, None], 1)
@@ -279,6 +286,8 @@ class _FirstPass:
             return coarse
         before, self.shifts[channel] = self.shifts.get(channel), finer
         moved = 0.0 if before is None else finer.value - before.value
+        if channel == "position":
+            return coarse._replace(sd=HONEST[channel] * max(coarse.sd, finer.sd))
         return coarse._replace(value=finer.value, sd=float(np.hypot(HONEST[channel] * finer.sd, moved)))
 
     def _learn_mounting(self, blocks: dict[str, Array], sds: dict[str, Array]) -> None:
@@ -301,6 +310,25 @@ class _FirstPass:
         if drift := self.offsets.get(DRIFT, 0.0):
             told.append(drift_decision(drift, self.drift_sd, self.span))
         return [*told, *jitter_decisions(self.jitter)]
+
+    @property
+    def share(self) -> float | None:
+        """Share of positions' stated deviations that wanders; None where it is not known or not asked for."""
+        if not np.isfinite(self.errors[1]) or not self.system.gnss.wander:
+            return None
+        stated = np.maximum(self.past.gnss.sd_position[:, :2], self.system.gnss.position_floor)
+        return float(np.clip(self.errors[1] / np.nanmedian(stated), *SHARES))
+
+    def wander_decisions(self) -> list[Decision]:
+        """How much of positions' errors wanders, where velocities tell it."""
+        if self.share is None:
+            return []
+        white, wander = self.errors
+        evidence = (
+            f"held against a path of {self.span:.0f} s by velocities, positions wander by {wander:.2f} m and scatter by "
+            f"{white:.2f} m from second to second; of what they state between {SHARES[0]:g} and {SHARES[1]:g} is believed"
+        )
+        return [Decision("positions' wander, share of their deviation", round(self.share, 2), "", "data", evidence)]
 
     def mounting_decisions(self) -> list[Decision]:
         """Pitch and yaw of the car's forward axis in the box."""
