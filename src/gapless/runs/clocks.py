@@ -10,7 +10,7 @@ import numpy as np
 
 from gapless.alignment.clock import Offset
 from gapless.alignment.shift import Shift
-from gapless.alignment.turns import far_off, turns
+from gapless.alignment.turns import far_off, hint, strangers, turns
 from gapless.alignment.uneven import Jitter
 from gapless.errors import RecordingError
 from gapless.trip.recording import Recording
@@ -72,7 +72,15 @@ def base_offset(past: Recording, given: Mapping[str, float]) -> float:
     """
     if OTHER.keys() & given.keys():
         return 0.0
-    base = far_off(turns(past.imu, past.gnss))
+    told = turns(past.imu, past.gnss)
+    base = far_off(told)
+    if strangers(told) and not base:
+        base = hint(past.imu, past.gnss)
+        if not base:
+            raise RecordingError(
+                f"{past.name}: the turns of the GNSS course and those of the gyros are not the same ones at any offset "
+                f"within ten minutes; put both on one clock, and check that both logs are of one drive"
+            )
     if abs(base) > MOST:
         way, cure = ("later", "subtract") if base < 0.0 else ("earlier", "add")
         leap = " (GPS time is 18 s ahead of UTC)" if abs(abs(base) - 18.0) < 1.0 else ""
