@@ -63,7 +63,7 @@ class _Block(NamedTuple):
     """Bins of one stretch: residuals and regressors, columns by axis."""
 
     time: Array
-    count: Array
+    many: Array
     left: Array
     rate: Array
     scaled: Array
@@ -175,17 +175,27 @@ def _blocks(curve: Curve, time: Array, value: Array, offset: float) -> list[_Blo
     return made
 
 
-def _fit(blocks: list[_Block], degree: int, felt: bool) -> tuple[float, float, float, float, float, float, float]:
+def _fit(
+    blocks: list[_Block], degree: int, felt: bool
+) -> tuple[float, float, float, float, float, float, float]:
     """Most likely errors, then offset and drift with their deviations."""
     many = sum(len(b.time) for b in blocks)
     middle = sum(float(b.time.sum()) for b in blocks) / many
     spare = [np.ones(len(b.time)) for b in blocks]
     best = min(
-        ((_solve(blocks, spare, degree, middle, felt, r, w), r, w) for r in _RATIOS for w in _WALKS if felt or max(r, 8.0 * w) <= SMOOTH),
+        (
+            (_solve(blocks, spare, degree, middle, felt, r, w), r, w)
+            for r in _RATIOS
+            for w in _WALKS
+            if felt or max(r, 8.0 * w) <= SMOOTH
+        ),
         key=lambda one: one[0].cost,
     )
     for _ in range(2):
-        spare = [np.maximum(s, (np.abs(e).max(axis=1) / _SPIKE) ** 2) for s, e in zip(spare, best[0].whitened, strict=True)]
+        spare = [
+            np.maximum(s, (np.abs(e).max(axis=1) / _SPIKE) ** 2)
+            for s, e in zip(spare, best[0].whitened, strict=True)
+        ]
         best = _solve(blocks, spare, degree, middle, felt, *best[1:]), *best[1:]
     solved, ratio, _ = best
     value, sd = solved.value, solved.sd
@@ -236,16 +246,16 @@ def _solve(
             a = white[:, 1:] / scales[k // d]
             normal += a.T @ a
             right += a.T @ (white[:, 0] / scales[k // d])
-        normal += np.diag([1e-12, 1e6, *[400.0] * (many - 2)])  # no clock runs wrong by more than a thousandth; a scale by 5 %
+        normal += np.diag(
+            [1e-12, 1e6, *[400.0] * (many - 2)]
+        )  # no clock runs wrong by more than a thousandth; a scale by 5 %
         cov = np.linalg.inv(normal)
         value = cov @ right
         off = [w[:, 0] - w[:, 1:] @ value for w in parts]
         squares = np.array([sum(float(e @ e) for e in off[k * d : k * d + d]) for k in range(len(blocks))])
         scales = np.sqrt(np.maximum(squares / np.array(sizes), 1e-12))
     cost = logs + float(2.0 * np.array(sizes) @ np.log(scales))
-    whitened = [
-        np.column_stack([off[k * d + i] for i in range(d)]) / scales[k] for k in range(len(blocks))
-    ]
+    whitened = [np.column_stack([off[k * d + i] for i in range(d)]) / scales[k] for k in range(len(blocks))]
     sd = np.sqrt(np.maximum(np.diag(cov), _lasting(parts, scales, off, cov, d)))
     return _Solved(cost, (float(value[0]), float(value[1])), (float(sd[0]), float(sd[1])), scales, whitened)
 
@@ -254,9 +264,8 @@ def _lasting(parts: list[Array], scales: Array, off: list[Array], cov: Array, d:
     """Variances of what was fitted where residuals are not white all the same (Newey and West 1987)."""
     middle = np.zeros_like(cov)
     for k in range(len(scales)):
-        u = sum(
-            parts[k * d + i][:, 1:] * off[k * d + i][:, None] for i in range(d)
-        ) / scales[k] ** 2
+        pairs = [parts[k * d + i][:, 1:] * off[k * d + i][:, None] for i in range(d)]
+        u = np.sum(pairs, axis=0) / scales[k] ** 2
         reach = min(int(LASTS / BIN), len(u) - 1)
         for lag in range(reach + 1):
             both = u[lag:].T @ u[: len(u) - lag]

@@ -44,6 +44,10 @@ class Doubt(NamedTuple):
     lasting: float = 10.0
 
 
+SURE: Final = Doubt()
+"""A clock that is known."""
+
+
 @kernel
 def lean(
     p: Array, row: int, r: Array, v: Array, change: Array, decay: float, constant: Array, moved: Array

@@ -115,7 +115,9 @@ class Navigator:
         settings : Settings
             Of these, how uneven stamps are and what is not known of their clock.
         """
-        heard = {name: settings.sensors[name] for name in ("position", "velocity") if name in settings.sensors}
+        heard = {
+            name: settings.sensors[name] for name in ("position", "velocity") if name in settings.sensors
+        }
         sensors = {**self.settings.sensors, **heard}
         self.settings = replace(self.settings, sensors=sensors, doubt=settings.doubt)
 

@@ -14,7 +14,7 @@ from gapless.bridges.base import Bridge
 from gapless.filters.adaptation.base import Adaptation
 from gapless.filters.adaptation.gate import Gate
 from gapless.filters.adaptation.registry import KINDS
-from gapless.filters.stamp_doubt import Doubt
+from gapless.filters.stamp_doubt import SURE, Doubt
 from gapless.fold.manner import Manner
 from gapless.inertial.layout import Layout
 from gapless.measurements.base import Constraint, Sensor
@@ -82,7 +82,7 @@ class Settings:
     lateness: float = 0.0
     misalignment: float = 0.0
     wander_time: float = 60.0
-    doubt: Doubt = Doubt()
+    doubt: Doubt = SURE
     open_loop: bool = False
     cubature: bool = False
     trail: float = 0.0

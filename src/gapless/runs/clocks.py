@@ -207,7 +207,9 @@ def clock_decision(channel: str, clocks: Clocks, span: float) -> Decision:
         f"misfit {100.0 * (1.0 - 1.0 / own.gain):.1f} % less than without"
     )
     if abs(own.value - taken.value) > 0.5 * own.sd or own.sd >= VAGUE:
-        what = "weighed against " + ("the receiver's other stamps" if channel == "position" else "none at all")
+        what = "weighed against " + (
+            "the receiver's other stamps" if channel == "position" else "none at all"
+        )
         evidence = f"found {own.value:+.3f} ± {own.sd:.3f} s, {what}; {evidence}"
     return Decision(name, value, "s", "data", evidence, sd)
 
@@ -299,7 +301,9 @@ def clock_notes(clocks: Clocks, jitter: Jitter, drift: float) -> tuple[str, ...]
             "car drives far in that time; give the offsets if they are known (--clock position=... --clock velocity=...)"
         )
     if drift:
-        notes.append(f"the receiver's clock and the IMU's part by {1e6 * drift:.0f} ppm; its stamps are corrected")
+        notes.append(
+            f"the receiver's clock and the IMU's part by {1e6 * drift:.0f} ppm; its stamps are corrected"
+        )
     uneven = math.hypot(jitter.white, jitter.lasting)
     if uneven > NOTED:
         notes.append(

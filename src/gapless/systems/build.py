@@ -10,7 +10,7 @@ import numpy as np
 from gapless.alignment.coarse import Aligner
 from gapless.errors import ConfigError
 from gapless.filters.adaptation.registry import KINDS, RULES, chain
-from gapless.filters.stamp_doubt import Doubt
+from gapless.filters.stamp_doubt import SURE, Doubt
 from gapless.fold.settings import Settings
 from gapless.inertial.layout import Layout
 from gapless.measurements.base import Constraint, Sensor
@@ -37,7 +37,7 @@ def settings(
     mounting: tuple[Array, Array],
     gyro_density: float = 0.0,
     row: float = 0.1,
-    doubt: Doubt = Doubt(),
+    doubt: Doubt = SURE,
 ) -> Settings:
     """Settings of a navigator.
 
