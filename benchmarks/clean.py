@@ -1,11 +1,11 @@
-"""How often the truth lies in the ellipses that are stated of clean drives, and how far clocks are off theirs.
+"""How often the truth lies in the ellipses that are stated of clean drives, and how far clocks are off.
 
-    python benchmarks/clean.py [--drives 40] [--profiles urban,highway,mixed] [--receivers ...] [--seconds 600]
+    python benchmarks/clean.py [--drives 40] [--profiles urban,highway,mixed] [--receivers ...]
 
-Simulated drives whose grade, receiver, clock and lever arm are drawn from their seed, fused with nothing told
-but the lever arm. By profile and by receiver: the share of rows, from 60 s after the alignment on, that lie in
-the 95 % ellipse, the worst drive's, the error, and the clocks' errors over their stated deviations, which are
-one if these are honest.
+Simulated drives whose grade, receiver, clock and lever arm are drawn from their seed, fused with nothing
+told but the lever arm. By profile and by receiver: the share of rows, from 60 s after the alignment on, that
+lie in the 95 % ellipse, the worst drive's, and the clocks' errors over their stated deviations (RMS), which
+are one if these are honest.
 """
 
 from __future__ import annotations
@@ -110,8 +110,8 @@ def main() -> None:
         if given.each:
             for d in drives:
                 told = " ".join(f"{off:+.3f}±{sd:.3f}" for off, sd in d.clocks.values())
-                what = f"{d.receiver:9} {d.grade:10} {100 * d.inside:5.1f} % {d.along:.2f} {d.cross:.2f} m ({d.stated:.2f})"
-                print(f"  {d.seed} {what} {told}")
+                error = f"{d.along:.2f} {d.cross:.2f} m ({d.stated:.2f})"
+                print(f"  {d.seed} {d.receiver:9} {d.grade:10} {100 * d.inside:5.1f} % {error} {told}")
         for kind in RECEIVERS:
             if of := [d for d in drives if d.receiver == kind]:
                 print(line(kind, of))

@@ -182,25 +182,15 @@ def _fit(
     many = sum(len(b.time) for b in blocks)
     middle = sum(float(b.time.sum()) for b in blocks) / many
     spare = [np.ones(len(b.time)) for b in blocks]
-    best = min(
-        (
-            (_solve(blocks, spare, degree, middle, felt, r, w), r, w)
-            for r in _RATIOS
-            for w in _WALKS
-            if felt or max(r, 8.0 * w) <= SMOOTH
-        ),
-        key=lambda one: one[0].cost,
-    )
+    tried = [(r, w) for r in _RATIOS for w in _WALKS if felt or max(r, 8.0 * w) <= SMOOTH]
+    found = [(_solve(blocks, spare, degree, middle, felt, r, w), r, w) for r, w in tried]
+    best, ratio, walk = min(found, key=lambda one: one[0].cost)
     for _ in range(2):
-        spare = [
-            np.maximum(s, (np.abs(e).max(axis=1) / _SPIKE) ** 2)
-            for s, e in zip(spare, best[0].whitened, strict=True)
-        ]
-        best = _solve(blocks, spare, degree, middle, felt, *best[1:]), *best[1:]
-    solved, ratio, _ = best
-    value, sd = solved.value, solved.sd
-    scale = float(np.median(solved.scales))
-    return value[0], sd[0], value[1], sd[1], middle, scale, scale * ratio
+        strays = [(np.abs(e).max(axis=1) / _SPIKE) ** 2 for e in best.whitened]
+        spare = [np.maximum(s, e) for s, e in zip(spare, strays, strict=True)]
+        best = _solve(blocks, spare, degree, middle, felt, ratio, walk)
+    scale = float(np.median(best.scales))
+    return best.value[0], best.sd[0], best.value[1], best.sd[1], middle, scale, scale * ratio
 
 
 class _Solved(NamedTuple):
@@ -239,7 +229,8 @@ def _solve(
         parts += np.hsplit(white - q @ (q.T @ white), d)
     scales, sizes = np.ones(len(blocks)), [len(b.time) * d - d * (degree + 1.0) for b in blocks]
     many = wanted - 1
-    value, cov = np.zeros(many), np.eye(many)
+    value: Array = np.zeros(many)
+    cov = np.asarray(np.eye(many))
     for _ in range(4):
         normal, right = np.zeros((many, many)), np.zeros(many)
         for k, white in enumerate(parts):
@@ -249,7 +240,7 @@ def _solve(
         normal += np.diag(
             [1e-12, 1e6, *[400.0] * (many - 2)]
         )  # no clock runs wrong by more than a thousandth; a scale by 5 %
-        cov = np.linalg.inv(normal)
+        cov = np.asarray(np.linalg.inv(normal))
         value = cov @ right
         off = [w[:, 0] - w[:, 1:] @ value for w in parts]
         squares = np.array([sum(float(e @ e) for e in off[k * d : k * d + d]) for k in range(len(blocks))])

@@ -1,4 +1,4 @@
-"""How uneven stamps are: what readings are off by along the track, in seconds of driving, and not across it."""
+"""How uneven stamps are: by how many seconds readings are off along the track, not across it."""
 
 from __future__ import annotations
 

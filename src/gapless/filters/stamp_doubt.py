@@ -1,10 +1,10 @@
 """What doubt about a receiver's clock makes of the position.
 
-A clock that is off by theta shows the car where it was, or will be: a fix is wrong by the velocity times theta,
-and dead reckoning by velocities of the same clock goes along with that. An offset is constant, so nothing
-averages it, and it is no state. As in `gapless.filters.consider`, what one second of it would do to the position
-is followed beside the filter; times the deviations that were decided it is added to what is stated, never to
-what decides gains.
+A clock that is off by theta shows the car where it was, or will be: a fix is wrong by the velocity times
+theta, and dead reckoning by velocities of the same clock goes along with that. An offset is constant, so
+nothing averages it, and it is no state. As in `gapless.filters.consider`, what one second of it would do to
+the position is followed beside the filter; times the deviations that were decided it is added to what is
+stated, never to what decides gains.
 """
 
 from __future__ import annotations
@@ -73,8 +73,8 @@ def lean(
     Returns
     -------
     constant, moved : ndarray
-        With A = I - K: A (g + change) + K v, A g + K v; A E A' + b b' + c b' + b c' and b + c with b = K v and
-        c = A E[e w'] decayed.
+        With A = I - K: A (g + change) + K v, A g + K v; A E A' + b b' + c b' + b c' and b + c with
+        b = K v and c = A E[e w'] decayed.
     """
     low, rest = cholesky(r), np.zeros((3, 3))
     for i in range(3):

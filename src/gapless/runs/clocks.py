@@ -78,8 +78,8 @@ def base_offset(past: Recording, given: Mapping[str, float]) -> float:
         base = hint(past.imu, past.gnss)
         if not base:
             raise RecordingError(
-                f"{past.name}: the turns of the GNSS course and those of the gyros are not the same ones at any offset "
-                f"within ten minutes; put both on one clock, and check that both logs are of one drive"
+                f"{past.name}: the turns of the GNSS course and those of the gyros are not the same at any "
+                "offset within ten minutes; put both on one clock, and check that they are of one drive"
             )
     if abs(base) > MOST:
         way, cure = ("later", "subtract") if base < 0.0 else ("earlier", "add")
@@ -94,8 +94,8 @@ def base_offset(past: Recording, given: Mapping[str, float]) -> float:
 def believed(channel: str, clocks: Clocks) -> Offset:
     """An offset as it was found, drawn to what is likely by as much as the data leave open.
 
-    Velocities tell their clock from accelerations, near the base; positions tell by how much theirs is another,
-    and mostly it is not. An odometer has a clock of its own.
+    Velocities tell their clock from accelerations, near the base; positions tell by how much theirs is
+    another, and mostly it is not. An odometer has a clock of its own.
 
     Parameters
     ----------
@@ -273,7 +273,8 @@ def jitter_decisions(jitter: Jitter) -> list[Decision]:
         return []
     evidence = (
         f"{jitter.readings} positions are off by {jitter.along:.3f} s of driving along the track and by "
-        f"{jitter.across:.3f} across it; {jitter.white:.3f} s from one to the next, {jitter.lasting:.3f} s over some seconds"
+        f"{jitter.across:.3f} across it; {jitter.white:.3f} s from one to the next, {jitter.lasting:.3f} s "
+        "over some seconds"
     )
     whole = math.hypot(jitter.white, jitter.lasting)
     return [Decision("jitter of stamps", round(whole, 3), "s", "data", evidence)]
@@ -297,8 +298,8 @@ def clock_notes(clocks: Clocks, jitter: Jitter, drift: float) -> tuple[str, ...]
     most = math.hypot(*doubt(clocks))
     if most >= VAGUE:
         notes.append(
-            f"the receiver's clock is known to {most:.2f} s only; positions are stated to be as uncertain as the "
-            "car drives far in that time; give the offsets if they are known (--clock position=... --clock velocity=...)"
+            f"the receiver's clock is known to {most:.2f} s only; positions are stated as uncertain as "
+            "the car drives far in that time; if it is known, say --clock position=... --clock velocity=..."
         )
     if drift:
         notes.append(
@@ -307,7 +308,7 @@ def clock_notes(clocks: Clocks, jitter: Jitter, drift: float) -> tuple[str, ...]
     uneven = math.hypot(jitter.white, jitter.lasting)
     if uneven > NOTED:
         notes.append(
-            f"the receiver's stamps are uneven by {uneven:.3f} s; the error is stated, but stamp fixes by the "
-            "receiver's own time and it is gone"
+            f"the receiver's stamps are uneven by {uneven:.3f} s, and that is stated; by the receiver's own "
+            "time they would not be"
         )
     return tuple(notes)

@@ -139,6 +139,7 @@ class FirstPass:
 
     @property
     def clocks(self) -> Clocks:
+        """What is known of clocks so far."""
         return Clocks(self.given, self.base, self.found)
 
     def _estimates(self, path: Trajectory, blocks: dict[str, Array]) -> dict[str, Offset]:
@@ -222,8 +223,8 @@ class FirstPass:
             return []
         white, wander = self.errors
         evidence = (
-            f"held against {self.span:.0f} s of velocities, positions wander by {wander:.2f} m and scatter by "
-            f"{white:.2f} m from second to second; weighed against {self.system.gnss.wander:g}"
+            f"held against {self.span:.0f} s of velocities, positions wander by {wander:.2f} m and scatter "
+            f"by {white:.2f} m from second to second; weighed against {self.system.gnss.wander:g}"
         )
         name = "positions' wander, share of their deviation"
         return [Decision(name, round(self.share, 2), "", "data", evidence)]
