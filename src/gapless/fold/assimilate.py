@@ -86,8 +86,11 @@ def assimilate(
     if tape is not None:
         tape.corrected(o.H, hp, s, o.z)
     dx = correct(b.p, ROW, n, o.z, o.H, r, s, hp, verdict.gain)
-    if o.slow is not None:
-        state.wander.hear(time, _seen(b, o.H), r, o.slow)
+    if channel == "position":
+        seen = _seen(b, o.H)
+        if o.slow is not None:
+            state.wander.hear(time, seen, r, o.slow)
+        state.stamps.hear(time, seen.ravel(), len(seen), r, b.v_n, settings.doubt.lasting)
     if b.error.size:
         b.error[:n] += dx
     else:

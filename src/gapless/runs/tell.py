@@ -13,7 +13,7 @@ from gapless.runs.decide import Decided
 from gapless.scenarios import Outage
 from gapless.systems.denoising import denoiser
 from gapless.systems.recipe import System
-from gapless.trip.recording import Recording
+from gapless.trip.recording import Note, Recording
 from gapless.trip.solution import Decision, Solution
 
 
@@ -69,7 +69,7 @@ def collect(
         ),
         outages=tuple((o.start, o.until) for o in outages),
         start=recording.start,
-        notes=recording.notes,
+        notes=(*recording.notes, *(Note("clocks", note, 0) for note in decided.notes)),
         learned=tuple(m for bridge in navigator.bridges if (m := bridge.learned()) is not None),
         exhibits=(
             *(e for bridge in navigator.bridges if (e := bridge.exhibit()) is not None),

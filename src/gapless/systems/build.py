@@ -10,6 +10,7 @@ import numpy as np
 from gapless.alignment.coarse import Aligner
 from gapless.errors import ConfigError
 from gapless.filters.adaptation.registry import KINDS, RULES, chain
+from gapless.filters.stamp_doubt import SURE, Doubt
 from gapless.fold.settings import Settings
 from gapless.inertial.layout import Layout
 from gapless.measurements.base import Constraint, Sensor
@@ -37,6 +38,7 @@ def settings(
     mounting: tuple[Array, Array],
     gyro_density: float = 0.0,
     row: float = 0.1,
+    doubt: Doubt = SURE,
 ) -> Settings:
     """Settings of a navigator.
 
@@ -53,6 +55,8 @@ def settings(
         What the log's gyros show of vibration [rad/sqrt(s)].
     row : float
         Time between journal rows [s].
+    doubt : Doubt
+        Of the receiver's stamps.
 
     Returns
     -------
@@ -61,7 +65,7 @@ def settings(
     imu = budget(system.imu, gyro_density)
     names = states(system, recording)
     angles, angle_sd = mounting
-    sensors, lateness = _sensors(system, recording, angles), _lateness(stamps(system, offsets))
+    sensors, lateness = _sensors(system, recording, angles), _lateness(stamps(system, offsets), recording)
     rules = system.adaptation
     parts = [(part.bridge, part.learner) for part in (system, *candidates(system))]
     spoken = tuple(b for use, who in parts for b in bridges(use, who, sensors, lateness))
@@ -97,6 +101,7 @@ def settings(
         misalignment=float(imu["misalignment"]),
         wander_time=system.gnss.wander_time,
         cubature=system.filter.moments == "cubature",
+        doubt=doubt,
         open_loop=system.filter.correction == "feedforward",
     )
 
@@ -144,9 +149,14 @@ def stamps(system: System, offsets: Mapping[str, float]) -> dict[str, float]:
     return {**offsets, "velocity": offsets.get("velocity", 0.0) + 0.5 * system.gnss.velocity_averaging}
 
 
-def _lateness(offsets: Mapping[str, float]) -> float:
+def _lateness(offsets: Mapping[str, float], recording: Recording) -> float:
     """How late readings arrive, with some slack; 0 where none does."""
-    most = max(0.0, *(-late for late in offsets.values()))
+    more = offsets.get("drift", 0.0) * (recording.gnss.time[[0, -1]] - offsets.get("since", 0.0))
+    most = max(
+        0.0,
+        *(-late for name, late in offsets.items() if name == "odometer"),
+        *(-late - m for name, late in offsets.items() if name in ("position", "velocity") for m in more),
+    )
     return most + 0.05 if most > 0.0 else 0.0
 
 
