@@ -48,7 +48,7 @@ ENOUGH = 600.0
 """Seconds of navigation after which a pass learns little more."""
 LATE = 0.02
 """By how much a clock is moved to see what becomes of the arm [s]."""
-ROUNDS, SETTLED = 4, 0.05
+ROUNDS, SETTLED = 5, 0.05
 """So often clocks and arm are looked for in turn, or until the arm moves by less [m]: each round leaves about
 a quarter of the error."""
 
@@ -178,28 +178,32 @@ def settle(past: Recording, system: System, first: Callable[[System], K]) -> tup
     told, known = told_arm(system, past), first(system)
     if known.span == 0.0 or not _shows(past, system):
         return known, Arm(lever_arm(system, past), None, _taken(system, past, None))
-    used, found = lever_arm(system, past), _look(past, system, known)
+    then = _in_turn(past, system, first, known)
+    found = _look(past, *then)
+    if found is not None and found.denies(told):
+        sd = np.minimum(np.maximum(2.0 * found.sd, LEAST), system.gnss.lever_arm_sd)
+        return then[1], Arm(found.value, sd, _found(system, past, found))
+    if told is None:
+        return known, _guessed(system, known, found)
+    return known, Arm(told, None, _taken(system, past, found))
+
+
+def _in_turn(past: Recording, system: System, first: Callable[[System], K], known: K) -> tuple[System, K]:
+    """Clocks and arm in turn, as long as positions at a clock ask for another arm than it was had with.
+
+    A wrong arm makes a clock vague, too: what that leaves open does not count before both have settled.
+    """
+    told, used, armed = told_arm(system, past), lever_arm(system, past), system
     for _ in range(ROUNDS):
+        found = _pass(past, armed, known, known.offsets)
         if found is None or not found.denies(told):
             break
         moved, used = float(np.linalg.norm(found.value - used)), found.value
         if moved < SETTLED:
             break
-        known = first(with_arm(system, used))
-        found = _look(past, with_arm(system, used), known)
-    return _verdict(past, system, first, known, found)
-
-
-def _verdict(
-    past: Recording, system: System, first: Callable[[System], K], known: K, found: Found | None
-) -> tuple[K, Arm]:
-    told, at_first = told_arm(system, past), lever_arm(system, past)
-    if found is not None and found.denies(told):
-        sd = np.minimum(np.maximum(2.0 * found.sd, LEAST), system.gnss.lever_arm_sd)
-        return known, Arm(found.value, sd, _found(system, past, found))
-    if told is None:
-        return known, _guessed(system, known, found)
-    return known, Arm(at_first, None, _taken(system, past, found))
+        armed = with_arm(system, used)
+        known = first(armed)
+    return armed, known
 
 
 def _shows(past: Recording, system: System) -> bool:
