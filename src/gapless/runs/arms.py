@@ -34,7 +34,7 @@ SEEN = 0.5
 """An arm is found where its horizontal standard deviations come below this [m]."""
 TAPE = 0.15
 """Standard deviation of an arm that somebody measured, held against a real drive [m]: after four minutes of
-one the fixes put an antenna that is 5 cm from its box 0.55 m away, and stated 0.28 m."""
+one the fixes put an antenna that is 5 cm from its box half a metre away, and stated half of that."""
 CHANCE = 1e-4
 """An arm that was told is not believed where one so far off comes by chance more seldom."""
 GUESS = 0.01
