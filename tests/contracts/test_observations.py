@@ -136,6 +136,9 @@ def test_h_is_the_finite_difference(name, layout):
         # Central differences leave step^2 v = 1e-9 of a rotation and 1e-9 m / step of a latitude; H
         # leaves out how the axes turn with the vehicle's place (1 m of 1 s of the earth: v / R = 2e-6)
         # and how the earth's rate in the box turns with its attitude, 7.3e-5 rad/s.
+        if name == "velocity" and j in range(*layout.blocks.get("lever_arm", slice(0, 0)).indices(layout.n)):
+            assert not h[:, j].any()  # one sample's rate teaches no arm; R takes what is in doubt of it
+            continue
         left_out = 1e-4 if name == "zero_velocity" else 5e-6
         np.testing.assert_allclose(
             (back - ahead) / (2.0 * step), h[:, j], rtol=0.0, atol=left_out + 2e-4 * (j < 2)

@@ -14,11 +14,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gapless import attitude
-from gapless.trip.motion import Sums
+from gapless.trip.motion import Sums, offset_ned
 from gapless.trip.recording import Array, Imu, Trajectory
 
 STEP = 0.02
 """Spacing of the scan [s]."""
+
+NEAR = 4.0
+"""Readings lead an inertial velocity by their mean over about so long [s]."""
+LED = 1.0
+"""Spacing of these means [s]."""
 
 
 class Offset(NamedTuple):
@@ -213,3 +218,106 @@ def path_curve(path: Trajectory) -> Curve:
     v = path.v_n[:, :2]
     step = 0.5 * (v[1:] + v[:-1]) * np.diff(path.time)[:, None]
     return Curve(path.time, np.concatenate([np.zeros((1, 2)), np.cumsum(step, axis=0)]))
+
+
+def way(lla: Array) -> Array:
+    """North and east that were gone from fix to fix, added up, as the integral of a velocity is.
+
+    Parameters
+    ----------
+    lla : ndarray, shape (k, 3)
+
+    Returns
+    -------
+    ndarray, shape (k, 2)
+        [m]; over some kilometres an offset in one plane differs by decimetres.
+    """
+    steps = offset_ned(lla[1:], lla[:-1])[:, :2]
+    return np.concatenate([np.zeros((1, 2)), np.cumsum(steps, axis=0)])
+
+
+def swinging(curve: Curve, path: Trajectory, arm: Array, order: int) -> Curve:
+    """A curve of the antenna from that of the box.
+
+    Parameters
+    ----------
+    curve : Curve
+        At the path's times.
+    path : Trajectory
+        Attitude over time.
+    arm : ndarray, shape (3,)
+        Antenna from the IMU, FRD [m].
+    order : int
+        0 for a path, to which C l is added; 1 for a velocity, to which its rate is.
+
+    Returns
+    -------
+    Curve
+    """
+    if not np.any(arm):
+        return curve
+    there = (attitude.to_matrix(attitude.from_euler(path.euler)) @ np.asarray(arm, float))[:, :2]
+    return Curve(curve.time, curve.value + (np.gradient(there, path.time, axis=0) if order else there))
+
+
+def led(curve: Curve, antenna: Curve, time: Array, value: Array) -> Curve:
+    """A path along an inertial velocity that readings lead: what it drifts by is taken off.
+
+    The drift is a local mean of what readings say more, to either side alike: a filter's would be late, and
+    lateness is what is looked for.
+
+    Parameters
+    ----------
+    curve : Curve
+        Inertial velocity but for a slow drift.
+    antenna : Curve
+        The same of the antenna, whose readings they are.
+    time : ndarray, shape (k,)
+        Of the readings, on the clock of the curve [s].
+    value : ndarray, shape (k, d)
+        Readings.
+
+    Returns
+    -------
+    Curve
+        [m]
+    """
+    inside = (time > curve.time[0]) & (time < curve.time[-1])
+    time, value = without_spikes(time[inside], value[inside])
+    knots = np.arange(curve.time[0], curve.time[-1] + LED, LED)
+    v = np.empty_like(curve.value)
+    for axis in range(value.shape[1]):
+        more = value[:, axis] - np.interp(time, antenna.time, antenna.value[:, axis])
+        v[:, axis] = curve.value[:, axis] + np.interp(curve.time, knots, smooth(time, more, knots, NEAR))
+    step = 0.5 * (v[1:] + v[:-1]) * np.diff(curve.time)[:, None]
+    return Curve(curve.time, np.concatenate([np.zeros((1, v.shape[1])), np.cumsum(step, axis=0)]))
+
+
+def smooth(time: Array, value: Array, knots: Array, width: float) -> Array:
+    """Local lines through readings, at some times.
+
+    Parameters
+    ----------
+    time, value : ndarray, shape (k,)
+    knots : ndarray, shape (n,)
+        Increasing [s].
+    width : float
+        Deviation of the weight about a knot [s].
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        Where there is no reading near, as at the knot before.
+    """
+    found = np.zeros(len(knots))
+    for k, at in enumerate(knots):
+        a, b = np.searchsorted(time, [at - 3.0 * width, at + 3.0 * width])
+        u, y = time[a:b] - at, value[a:b]
+        w = np.exp(-0.5 * (u / width) ** 2)
+        s0, s1, s2 = w.sum(), w @ u, w @ u**2
+        d = s0 * s2 - s1**2
+        if d > 1e-6:
+            found[k] = (s2 * (w @ y) - s1 * (w @ (u * y))) / d
+        elif k:
+            found[k] = found[k - 1]
+    return found

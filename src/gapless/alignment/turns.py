@@ -26,6 +26,14 @@ _ALONE: Final = 2.0
 """Anywhere else so many times as much of the turns must be left unexplained: half of them is least."""
 _NEAR: Final = 5.0
 """Offsets less apart see the same turns [s]."""
+_TURNING: Final = 0.09
+"""A car turns where its course does by so much within twice `_HALF` [rad]: it swerves by less."""
+_TOLD: Final = 20.0
+"""Seconds of turning on both sides from which turns must agree: half a dozen corners."""
+_STRANGE: Final = 0.3
+"""Turns of which no offset explains so much are not of one car at one time: by chance it is a fifth."""
+_FAR: Final = 600.0
+"""Where no offset within `REACH` explains turns, offsets up to this are looked at for a hint [s]."""
 _SMALL: Final = 1.0
 """Offsets up to this are left to the finer search [s]."""
 
@@ -39,25 +47,30 @@ class Turns(NamedTuple):
         Added to the stamps of the receiver [s].
     explained : ndarray, shape (n,)
         Share of the variance of the course's turns; zero where too little was driven.
+    both : float
+        Seconds of turning that course and gyros have, the lesser of the two.
     """
 
     offset: Array
     explained: Array
+    both: float = 0.0
 
 
-def turns(imu: Imu, gnss: Gnss) -> Turns:
+def turns(imu: Imu, gnss: Gnss, reach: float = REACH) -> Turns:
     """Hold the turns of the course against those of the gyros, about whatever axis explains most.
 
     Parameters
     ----------
     imu : Imu
     gnss : Gnss
+    reach : float
+        Offsets up to this are looked at [s].
 
     Returns
     -------
     Turns
     """
-    offsets, explained = np.arange(-REACH, REACH + 0.5 * _STEP, _STEP), list[float]()
+    offsets, explained = np.arange(-reach, reach + 0.5 * _STEP, _STEP), list[float]()
     if not len(imu):
         return Turns(offsets, np.zeros(len(offsets)))
     drove, angle = steered(gnss, _HALF), Sums.of(imu, imu.dtheta)
@@ -66,7 +79,48 @@ def turns(imu: Imu, gnss: Gnss) -> Turns:
         there = (at - _HALF > angle.time[0]) & (at + _HALF < angle.time[-1])
         felt = angle.around(at[there], _HALF)
         explained.append(_explained(felt, turned[there]) if there.sum() >= _ENOUGH else 0.0)
-    return Turns(offsets, np.array(explained))
+    return Turns(offsets, np.array(explained), _turning(turned, angle))
+
+
+def _turning(turned: Array, angle: Sums) -> float:
+    """Seconds of turning that both course and gyros have."""
+    at = np.arange(angle.time[0] + _HALF, angle.time[-1] - _HALF, 1.0)
+    if not len(at):
+        return 0.0
+    felt = angle.around(at, _HALF)
+    swung = np.linalg.norm(felt - np.median(felt, axis=0), axis=1)
+    return float(min((np.abs(turned) > _TURNING).sum(), (swung > _TURNING).sum()))
+
+
+def strangers(told: Turns) -> bool:
+    """Whether course and gyros both tell of turns, and no offset makes them the same ones.
+
+    Parameters
+    ----------
+    told : Turns
+
+    Returns
+    -------
+    bool
+        False where there are too few turns, as on a motorway.
+    """
+    return told.both >= _TOLD and float(told.explained.max()) < _STRANGE
+
+
+def hint(imu: Imu, gnss: Gnss) -> float:
+    """Offset further off that explains turns all the same; zero where there is none.
+
+    Parameters
+    ----------
+    imu : Imu
+    gnss : Gnss
+
+    Returns
+    -------
+    float
+        [s]
+    """
+    return far_off(turns(imu, gnss, _FAR))
 
 
 def far_off(told: Turns) -> float:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -10,10 +11,13 @@ from numpy.typing import NDArray
 from gapless import earth
 from gapless.attitude import from_euler, to_matrix, wrap
 from gapless.evaluation.interpolation import interpolate
-from gapless.evaluation.statistics import nees
+from gapless.evaluation.statistics import nees, sound
 from gapless.filters.quantile import chi_square_quantile
 from gapless.trip.motion import horizontal_velocity, motion, offset_ned
 from gapless.trip.recording import Array, Columns, Gnss, Trajectory
+
+VAST = 1e7
+"""A standard deviation that is larger says nothing: one is nowhere on earth [m]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,7 +60,7 @@ class Errors(Columns):
     @property
     def nees(self) -> Array:
         """Normalised squared horizontal error, two degrees of freedom, shape (n,)."""
-        return nees(self.position[:, :2], self.covariance)
+        return np.where(self.usable, nees(self.position[:, :2], self.covariance), np.nan)
 
     def bound(self, probability: float = 0.95) -> Array:
         """Semi-major axis of the stated error ellipse.
@@ -85,19 +89,48 @@ class Errors(Columns):
         Returns
         -------
         ndarray of bool, shape (n,)
-            False where the error is unknown.
+            False where the error is unknown, or what is stated is no covariance.
         """
         return np.asarray(self.nees <= chi_square_quantile(probability, 2))
 
+    @property
+    def usable(self) -> NDArray[np.bool_]:
+        """Whether what is stated is a covariance, neither singular nor beyond the earth; shape (n,)."""
+        size = np.diagonal(self.covariance, axis1=1, axis2=2).max(axis=1)
+        return np.asarray(sound(self.covariance) & (size < VAST * VAST))
+
+    @property
+    def unstated(self) -> int:
+        """Epochs with a known error and no usable covariance."""
+        return int((np.isfinite(self.horizontal) & ~self.usable).sum())
+
+    def coverage(self, probability: float = 0.95) -> float:
+        """Share of the epochs with a known error that the stated ellipse holds.
+
+        Parameters
+        ----------
+        probability : float
+            That it should.
+
+        Returns
+        -------
+        float
+            An epoch without a usable covariance is outside; NaN where no epoch has one.
+        """
+        known = np.isfinite(self.horizontal)
+        return float(self.inside(probability)[known].mean()) if (known & self.usable).any() else math.nan
+
 
 def _largest_eigenvalue(c: Array) -> Array:
-    mean = 0.5 * (c[:, 0, 0] + c[:, 1, 1])
-    return np.asarray(mean + np.hypot(0.5 * (c[:, 0, 0] - c[:, 1, 1]), c[:, 0, 1]))
+    with np.errstate(invalid="ignore", over="ignore"):
+        mean = 0.5 * (c[:, 0, 0] + c[:, 1, 1])
+        return np.asarray(mean + np.hypot(0.5 * (c[:, 0, 0] - c[:, 1, 1]), c[:, 0, 1]))
 
 
 def _horizontal_covariance(trajectory: Trajectory) -> Array:
     c = np.empty((len(trajectory), 2, 2))
-    c[:, 0, 0], c[:, 1, 1] = trajectory.sd[:, 0] ** 2, trajectory.sd[:, 1] ** 2
+    with np.errstate(over="ignore"):  # whatever a solution states
+        c[:, 0, 0], c[:, 1, 1] = trajectory.sd[:, 0] ** 2, trajectory.sd[:, 1] ** 2
     c[:, 0, 1] = c[:, 1, 0] = trajectory.horizontal
     return c
 
@@ -171,8 +204,8 @@ def at_antenna(solution: Trajectory, lever_arm: Array) -> Trajectory:
     ----------
     solution : Trajectory
         With attitude.
-    lever_arm : ndarray, shape (3,)
-        Antenna from the IMU, FRD [m].
+    lever_arm : ndarray, shape (3,) or (n, 3)
+        Antenna from the IMU, FRD [m]; one, or one for each row.
 
     Returns
     -------
@@ -180,7 +213,8 @@ def at_antenna(solution: Trajectory, lever_arm: Array) -> Trajectory:
     """
     if not np.any(lever_arm):
         return solution
-    arm = to_matrix(from_euler(solution.euler)) @ np.asarray(lever_arm, float)
+    arms = np.broadcast_to(np.asarray(lever_arm, float), (len(solution), 3))
+    arm = np.einsum("nij,nj->ni", to_matrix(from_euler(solution.euler)), arms)
     lat, height = solution.lla[:, 0], solution.lla[:, 2]
     r_m, r_n = earth.radii(np.sin(lat))
     east = arm[:, 1] / ((r_n + height) * np.cos(lat))

@@ -145,11 +145,11 @@ def score_outage(
         distance=distance,
         **sizes,
         percent=math.nan if standing or distance <= 0.0 else 100.0 * sizes["horizontal_max"] / distance,
-        coverage_50=_share(known, 0.50),
-        coverage_95=_share(known, 0.95),
-        coverage_99=_share(known, 0.99),
+        coverage_50=known.coverage(0.50),
+        coverage_95=known.coverage(0.95),
+        coverage_99=known.coverage(0.99),
         nees=_mean(known.nees),
-        inside_95_end=_share(known.take(slice(-1, None)), 0.95),
+        inside_95_end=known.take(slice(-1, None)).coverage(0.95),
     )
 
 
@@ -250,12 +250,6 @@ def _largest(values: Array) -> float:
 
 def _last(values: Array) -> float:
     return abs(float(values[-1])) if len(values) else math.nan
-
-
-def _share(known: Errors, probability: float) -> float:
-    """Share of the epochs with a stated ellipse that it holds."""
-    inside = known.inside(probability)[np.isfinite(known.nees)]
-    return float(inside.mean()) if len(inside) else math.nan
 
 
 def _mean(values: Array) -> float:

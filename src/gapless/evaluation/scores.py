@@ -22,7 +22,7 @@ from gapless.evaluation.outages import (
 from gapless.evaluation.statistics import Consistency, Spread, consistency, rms, spread
 from gapless.scenarios import Outage, withheld
 from gapless.trip.motion import first_motion
-from gapless.trip.recording import Recording, Trajectory
+from gapless.trip.recording import Array, Recording, Trajectory
 from gapless.trip.solution import Solution
 
 DECISIONS_TAKEN: Final = "decisions taken late"
@@ -46,7 +46,7 @@ class Accuracy:
     roll_rmse, pitch_rmse, heading_rmse : float
         [rad]
     coverage : float
-        Share of epochs whose stated 95 % ellipse holds the truth.
+        Share of epochs whose stated 95 % ellipse holds the truth; one that states none is outside.
     nees : Consistency
         Of the horizontal error; the band supposes independent epochs.
     """
@@ -102,6 +102,11 @@ class Scores:
         return tuple(o for o in self.outages if o.counts)
 
     @property
+    def unstated(self) -> int:
+        """Epochs with a known error and no ellipse that could hold it: see `Errors.usable`."""
+        return self.errors.unstated
+
+    @property
     def horizontal(self) -> Spread:
         """Spread of the largest horizontal error over the pool [m]."""
         return pool_spread([self])
@@ -114,6 +119,7 @@ class Scores:
         return sum(o.coverage_95 * o.truth_epochs for o in told) / epochs if epochs else math.nan
 
 
+@np.errstate(over="ignore", invalid="ignore")  # whatever a solution states
 def score(solution: Solution, recording: Recording) -> Scores:
     """Score a solution against the recording's reference, or its GNSS where there is none.
 
@@ -131,7 +137,7 @@ def score(solution: Solution, recording: Recording) -> Scores:
     Scores
     """
     truth = _truth(recording, solution)
-    errors = _errors(solution.trajectory, truth, recording)
+    errors = _errors(solution.trajectory, truth, recording, solution)
     outages = [Outage(a, b) for a, b in solution.outages]
     outside = ~withheld(errors.time, outages, solution.start + truth.late)
     rise = height_offset(errors, outages, solution.start + truth.late)
@@ -148,6 +154,7 @@ def score(solution: Solution, recording: Recording) -> Scores:
     )
 
 
+@np.errstate(over="ignore", invalid="ignore")
 def score_pieces(
     whole: Solution, pieces: Sequence[tuple[Outage, Trajectory]], recording: Recording
 ) -> tuple[Scores, tuple[tuple[OutageScore, Ages], ...]]:
@@ -172,7 +179,7 @@ def score_pieces(
     decided, start = _decided(whole, DECISIONS_TAKEN), whole.start
     found = []
     for outage, trajectory in pieces:
-        errors = _errors(trajectory, truth, recording)
+        errors = _errors(trajectory, truth, recording, whole)
         scored = Outage(outage.start, outage.until)
         labels = outside_labels(scored, start, recording.imu, begun, decided)
         one = score_outage(errors, scored, start + truth.late, rise, labels)
@@ -215,9 +222,10 @@ def _truth(recording: Recording, solution: Solution) -> _Truth:
     return _Truth(recording.reference, fixes, late if recording.reference_clock == "gnss" else 0.0, late)
 
 
-def _errors(trajectory: Trajectory, truth: _Truth, recording: Recording) -> Errors:
+def _errors(trajectory: Trajectory, truth: _Truth, recording: Recording, solution: Solution) -> Errors:
     if recording.reference is None:  # fixes are on the IMU clock already, and hold for the antenna
-        return solution_errors(at_antenna(trajectory, recording.lever_arm), truth.trajectory)
+        arm = _lever_arm(solution, recording, trajectory.time)
+        return solution_errors(at_antenna(trajectory, arm), truth.trajectory)
     return solution_errors(trajectory, truth.trajectory, truth.clock_offset)
 
 
@@ -253,7 +261,7 @@ def accuracy(errors: Errors, height_offset: float = 0.0) -> Accuracy:
         roll_rmse=rms(errors.attitude[:, 0]),
         pitch_rmse=rms(errors.attitude[:, 1]),
         heading_rmse=rms(errors.attitude[:, 2]),
-        coverage=band.within,
+        coverage=errors.coverage(),
         nees=band,
     )
 
@@ -280,6 +288,18 @@ _STATEMENTS = (
     "the recording's reference, which navigation never sees",
     "the GNSS itself: in outages the withheld fixes, elsewhere the very fixes that were used",
 )
+
+
+def _lever_arm(solution: Solution, recording: Recording, time: Array) -> Array:
+    """The arm that a solution used: as it estimated it at these times, else as it took it."""
+    found = solution.states.get("lever_arm")
+    if found is not None:
+        rows = solution.trajectory.time
+        return np.column_stack([np.interp(time, rows, axis) for axis in found.T])
+    for decision in solution.decisions:
+        if decision.name == "antenna lever arm":
+            return np.array(decision.value, float)
+    return np.zeros(3) if recording.lever_arm is None else recording.lever_arm
 
 
 def _decided(solution: Solution, name: str) -> float:

@@ -7,9 +7,13 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from gapless.filters.quantile import chi_square_quantile
 from gapless.trip.recording import Array
+
+_SINGULAR = 1e-12
+"""Smallest eigenvalue of correlations that can be solved with: below it there is rounding only."""
 
 
 @dataclass(frozen=True)
@@ -79,14 +83,43 @@ def nees(error: Array, covariance: Array) -> Array:
     Returns
     -------
     ndarray, shape (n,)
-        NaN where an input is not finite or the covariance is not positive definite.
+        NaN where an input is not finite or the covariance is not one: see `sound`.
     """
     result = np.full(len(error), np.nan)
-    known = np.flatnonzero(np.isfinite(error).all(1) & np.isfinite(covariance).all((1, 2)))
-    known = known[np.linalg.eigvalsh(covariance[known])[:, 0] > 0.0]
-    e = error[known]
-    result[known] = np.einsum("ni,ni->n", e, np.linalg.solve(covariance[known], e[..., None])[..., 0])
+    known = np.flatnonzero(np.isfinite(error).all(axis=1) & sound(covariance))
+    sd, correlation = _correlation(covariance[known])
+    e = error[known] / sd
+    result[known] = np.einsum("ni,ni->n", e, np.linalg.solve(correlation, e[..., None])[..., 0])
     return result
+
+
+def sound(covariance: Array) -> NDArray[np.bool_]:
+    """Whether covariances are some: finite, with variances above zero, and not singular.
+
+    Parameters
+    ----------
+    covariance : ndarray, shape (n, d, d)
+
+    Returns
+    -------
+    ndarray of bool, shape (n,)
+    """
+    diagonal = np.diagonal(covariance, axis1=1, axis2=2)
+    fine = np.asarray(np.isfinite(covariance).all(axis=(1, 2)) & (diagonal > 0.0).all(axis=1))
+    rows = np.flatnonzero(fine)
+    _, correlation = _correlation(covariance[rows])
+    regular = np.isfinite(correlation).all(axis=(1, 2))
+    fine[rows] = regular
+    rows = rows[regular]
+    fine[rows] = np.linalg.eigvalsh(correlation[regular])[:, 0] > _SINGULAR
+    return fine
+
+
+def _correlation(covariance: Array) -> tuple[Array, Array]:
+    """Standard deviations, shape (n, d), and correlations: of one size, whatever is stated."""
+    sd = np.sqrt(np.diagonal(covariance, axis1=1, axis2=2))
+    with np.errstate(over="ignore", invalid="ignore"):
+        return sd, covariance / sd[:, :, None] / sd[:, None, :]
 
 
 @dataclass(frozen=True)

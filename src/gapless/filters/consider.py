@@ -4,8 +4,13 @@ A receiver's error is noise in part only; the rest wanders for a minute (atmosph
 many fixes share it. A filter with a state for it must be told its size and pace exactly, or hangs on
 to an offset that is not there. Here the filter weighs fixes as before, and the response of its own
 position to the wander is followed beside it: consider covariance analysis (Schmidt 1966; Tapley,
-Schutz and Born 2004, sec. 6), for the three states that a fix looks at. What it finds is added to the
-variances that are stated, never to the covariance that decides gains.
+Schutz and Born 2004, sec. 6), for the position that a fix looks at. That is the antenna's, y = H x, and
+all that is needed of the filter is its gain there: H K = H P H' (H P H' + R)^-1, with P before the
+update, which is H P H' R^-1 with P after it. What it finds is added to the variances that are stated of
+the box, never to the covariance that decides gains.
+
+I - H K = R (H P H' + R)^-1 never lengthens a vector in the norm of R^-1, so the response cannot run away,
+whatever lies between two updates.
 """
 
 from __future__ import annotations
@@ -34,16 +39,14 @@ def _times(a: Array, b: Array) -> Array:
 
 @kernel
 def respond(
-    p: Array, row: int, r: Array, slow: Array, decay: float, response: Array, shared: Array
+    p: Array, r: Array, slow: Array, decay: float, response: Array, shared: Array
 ) -> tuple[Array, Array]:
     """Moments after one update with z = e + slow w + v.
 
     Parameters
     ----------
-    p : ndarray, shape (row * row,)
-        Covariance after the update, its first three states those observed (the position, or the antenna
-        where the lever arm is a state): the gain is p r^-1.
-    row : int
+    p : ndarray, shape (3, 3)
+        H P H', of what is observed after the update: the gain there is p r^-1.
     r : ndarray, shape (3, 3)
         Covariance of the observation, as it counted.
     slow : ndarray, shape (3,)
@@ -56,12 +59,12 @@ def respond(
     Returns
     -------
     response, shared : ndarray, shape (3, 3)
-        With A = I - K and B = K diag(slow): A response A' + B B' - A shared B' - B shared' A' and
+        With A = I - H K and B = H K diag(slow): A response A' + B B' - A shared B' - B shared' A' and
         A shared - B, shared decayed.
     """
     low, rest, push, turned = cholesky(r), np.zeros((3, 3)), np.empty((3, 3)), np.empty((3, 3))
     for i in range(3):
-        gain = p[i * row : i * row + 3].copy()
+        gain = p[i].copy()
         solve(low, gain)
         rest[i, i] = 1.0
         for j in range(3):
@@ -95,18 +98,18 @@ class Wander:
     shared: Array = field(default_factory=lambda: np.zeros((3, 3)))
     time: float = -math.inf
 
-    def hear(self, time: float, p: Array, row: int, r: Array, slow: Array) -> None:
+    def hear(self, time: float, p: Array, r: Array, slow: Array) -> None:
         """Follow the filter through one update.
 
         Parameters
         ----------
         time : float
             [s]
-        p, row, r, slow
+        p, r, slow
             As for `respond`.
         """
         decay = math.exp(-(time - self.time) / self.tau)
-        self.response, self.shared = respond(p, row, r, slow, decay, self.response, self.shared)
+        self.response, self.shared = respond(p, r, slow, decay, self.response, self.shared)
         self.time = time
 
     def copy(self) -> Self:

@@ -115,8 +115,11 @@ def assimilate(
     if tape is not None:
         tape.corrected(o.H, hp, s, o.z)
     dx = correct(b.p, ROW, n, o.z, o.H, r, s, hp, verdict.gain)
-    if o.slow is not None:
-        state.wander.hear(time, *_looked_at(b, o.H), r, o.slow)
+    if channel == "position":
+        seen = _seen(b, o.H)
+        if o.slow is not None:
+            state.wander.hear(time, seen, r, o.slow)
+        state.stamps.hear(time, seen.ravel(), len(seen), r, b.v_n, settings.doubt.lasting)
     state.bench.corrected = state.bench.corrected + dx
     if b.error.size:
         b.error[:n] += dx
@@ -177,15 +180,13 @@ def _denied(state: State, time: float, z: Array) -> bool:
     return abs(off) > 0.5 * math.hypot(*z[:2])
 
 
-def _looked_at(belief: Belief, h: Array) -> tuple[Array, int]:
-    """Covariance of the three states that a fix looks at, and its row length.
+def _seen(belief: Belief, h: Array) -> Array:
+    """Covariance of what an observation looks at, H P H', as `Wander.hear` takes it.
 
-    They are those of the position, as near as a known lever arm's attitude allows. With a lever arm that is
-    a state they are the antenna's: the box's alone may be far less certain than what is seen.
+    Of a position that is the antenna's. The first three states stand for it only where the antenna is at the
+    box: a lever arm of metres adds the attitude's part, and one that is a state its own.
     """
-    if "lever_arm" not in belief.layout:
-        return belief.p, ROW
-    return np.ascontiguousarray(h @ belief.P @ h.T).ravel(), len(h)
+    return np.ascontiguousarray(h @ belief.P @ h.T)
 
 
 def _factor(counted: Array | None, stated: Array) -> float:

@@ -12,7 +12,9 @@ from gapless.fold.settings import Settings
 from gapless.fold.state import State
 from gapless.fold.tape import Tape
 from gapless.inertial import propagate as at
+from gapless.inertial.belief import Belief
 from gapless.inertial.trail import Trail
+from gapless.trip.motion import displace
 from gapless.units import DEG
 
 
@@ -43,6 +45,7 @@ def begin(start: Start, state: State, settings: Settings, journal: Journal, tape
     b.set_sd("velocity", start.sd_velocity + 0.5)
     b.set_sd("attitude", np.array([1.0, 1.0, 0.0]) * sd["attitude"])
     b.course_heading(start.sd_heading)
+    _from_antenna(b)
     b.memory[:] = 0.0
     b.memory[at.TIME] = state.clock
     if tape is not None:
@@ -50,6 +53,13 @@ def begin(start: Start, state: State, settings: Settings, journal: Journal, tape
     state.aligner, state.aligned, state.turned = None, True, None
     state.next_row = max(state.next_row, state.clock)
     journal.align(state.clock, evidence)
+
+
+def _from_antenna(b: Belief) -> None:
+    """A start has the antenna's position; where the arm is estimated, the box's is that far from it."""
+    if "lever_arm" in b.layout:
+        b.x[:3] = displace(b.x[None, :3], -(b.C_nb @ b.block("lever_arm"))[None])[0]
+        b.hang()
 
 
 def _first(start: Start, state: State, settings: Settings) -> None:

@@ -15,6 +15,28 @@ Arrival = tuple[float, tuple[Reading, ...]]
 """When readings arrive, and which."""
 
 
+DRIFT, SINCE = "drift", "since"
+"""Beside channels, offsets may name by how much those of a receiver grow in a second, and from when [s]."""
+
+
+def parted(time: Array, offsets: Mapping[str, float]) -> Array:
+    """What a drift of the receiver's clock adds to its offsets.
+
+    Parameters
+    ----------
+    time : ndarray
+        Stamps as logged [s].
+    offsets : mapping of str to float
+        As for `events`.
+
+    Returns
+    -------
+    ndarray
+        [s]; zeros where there is none.
+    """
+    return np.asarray(offsets.get(DRIFT, 0.0) * (time - offsets.get(SINCE, 0.0)))
+
+
 def events(
     recording: Recording,
     offsets: Mapping[str, float],
@@ -117,13 +139,14 @@ def _fixes(
     has_position = np.asarray(np.isfinite(gnss.lla).all(axis=1))
     has_velocity = np.asarray(np.isfinite(gnss.v_n).all(axis=1))
     late = offsets.get("position", 0.0), offsets.get("velocity", 0.0)
+    held = (gnss.time + parted(gnss.time, offsets)).tolist()
     for i in _between(gnss.time, start, end):
         t = float(gnss.time[i])
         readings: tuple[Reading, ...] = ()
         if has_position[i]:
-            readings += (Reading("position", t + late[0], gnss.lla[i], gnss.sd_position[i], gaps[i]),)
+            readings += (Reading("position", held[i] + late[0], gnss.lla[i], gnss.sd_position[i], gaps[i]),)
         if has_velocity[i]:
-            readings += (Reading("velocity", t + late[1], gnss.v_n[i], gnss.sd_velocity[i], gaps[i]),)
+            readings += (Reading("velocity", held[i] + late[1], gnss.v_n[i], gnss.sd_velocity[i], gaps[i]),)
         if readings:
             yield t, readings
 

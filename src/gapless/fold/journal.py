@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 
@@ -13,6 +13,10 @@ from gapless.inertial.belief import Belief
 from gapless.inertial.layout import ROW, Layout
 from gapless.trip.recording import Array, Trajectory
 from gapless.trip.solution import Innovations
+from gapless.units import DEG
+
+KNOCK: Final = 8.0 * DEG
+"""A box that was turned by less is not spoken of [rad]."""
 
 
 @dataclass

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import Any, Self
 
 import numpy as np
 
 from gapless.bridges.base import Bridge
 from gapless.filters.consider import Wander
+from gapless.filters.stamp_doubt import StampDoubt
 from gapless.fold.assimilate import assimilate
 from gapless.fold.begin import begin
 from gapless.fold.journal import Journal
@@ -91,7 +93,9 @@ class Navigator:
         aligner = settings.aligner.copy()
         manner = settings.manner
         bench = Bench(np.zeros(settings.layout.n))
-        self._state = State(belief, rules, constraints, bridges, aligner, wander, manner.noise, manner, bench)
+        self._state = State(
+            belief, rules, constraints, bridges, aligner, wander, StampDoubt(), manner.noise, manner, bench
+        )
         self._past = Past(settings.lateness)
         self._propagate = propagate_points if settings.cubature else at.propagate
         self.dropped = 0
@@ -134,6 +138,20 @@ class Navigator:
         state.manner, state.noise = manner, manner.noise
         for name, like in manner.constraints.items():
             state.constraints[name] = state.constraints[name].tuned(like)
+
+    def trust(self, settings: Settings) -> None:
+        """Go on with what was found of the receiver's stamps meanwhile.
+
+        Parameters
+        ----------
+        settings : Settings
+            Of these, how uneven stamps are and what is not known of their clock.
+        """
+        heard = {
+            name: settings.sensors[name] for name in ("position", "velocity") if name in settings.sensors
+        }
+        sensors = {**self.settings.sensors, **heard}
+        self.settings = replace(self.settings, sensors=sensors, doubt=settings.doubt)
 
     def step(self, event: Event) -> None:
         """Take in one event.
@@ -399,7 +417,11 @@ class Navigator:
         state, often = self._state, self.settings.row
         if state.clock >= state.next_row - EPS:
             state.next_row = max(state.next_row + often, state.clock + 0.5 * often)
-            source, shared = state.source, state.wander.response
+            source = state.source
+            shared = state.wander.response + state.stamps.stated(self.settings.doubt)
+            if self.settings.arm_doubt.any():
+                c = state.belief.C_nb
+                shared = shared + c @ self.settings.arm_doubt @ c.T
             off = state.bench.offset
             if off.any():  # fixes that moved away and stay there: nobody knows yet which place is right
                 shared = shared + np.outer(off, off) / HOLDS

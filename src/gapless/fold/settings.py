@@ -14,6 +14,7 @@ from gapless.bridges.base import Bridge
 from gapless.filters.adaptation.base import Adaptation
 from gapless.filters.adaptation.gate import Gate
 from gapless.filters.adaptation.registry import KINDS
+from gapless.filters.stamp_doubt import SURE, Doubt
 from gapless.fold.manner import Manner
 from gapless.inertial.layout import Layout
 from gapless.measurements.base import Constraint, Sensor
@@ -56,6 +57,11 @@ class Settings:
         Standard deviation of the box's axes against the sensors' [rad].
     wander_time : float
         Correlation time of what a sensor's readings share [s].
+    arm_doubt : ndarray, shape (3, 3)
+        How far an antenna that nobody told of may be from where it is taken to be: a covariance in FRD
+        [m^2], part of every stated position.
+    doubt : Doubt
+        Of a receiver's stamps.
     open_loop : bool
         Feed-forward: never correct the nominal state.
     cubature : bool
@@ -79,6 +85,8 @@ class Settings:
     lateness: float = 0.0
     misalignment: float = 0.0
     wander_time: float = 60.0
+    arm_doubt: Array = field(default_factory=lambda: np.zeros((3, 3)))
+    doubt: Doubt = SURE
     open_loop: bool = False
     cubature: bool = False
     trail: float = 0.0

@@ -13,6 +13,7 @@ from gapless.alignment.coarse import Aligner
 from gapless.bridges.base import Bridge
 from gapless.filters.adaptation.base import Adaptation
 from gapless.filters.consider import Wander
+from gapless.filters.stamp_doubt import StampDoubt
 from gapless.fold.manner import Manner
 from gapless.inertial.belief import Belief
 from gapless.inertial.lately import Lately
@@ -47,6 +48,8 @@ class State:
         None once there is a heading that is trusted.
     wander : Wander
         What the fixes' common error does to the position.
+    stamps : StampDoubt
+        What a clock that is off would do to it.
     noise : ndarray, shape (7,)
         Process noise, as an adaptation left it; never changed in place.
     manner : Manner
@@ -87,6 +90,7 @@ class State:
     bridges: list[Bridge]
     aligner: Aligner | None
     wander: Wander
+    stamps: StampDoubt
     noise: Array
     manner: Manner
     bench: Bench
@@ -176,6 +180,7 @@ class State:
             [bridge.copy() for bridge in self.bridges],
             None if self.aligner is None else self.aligner.copy(),
             self.wander.copy(),
+            self.stamps.copy(),
             self.noise,
             self.manner,
             self.bench.copy(),

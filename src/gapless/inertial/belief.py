@@ -175,6 +175,25 @@ class Belief:
             p[8, 8] += p[yaw, yaw]
             p[8, yaw] = p[yaw, 8] = -p[yaw, yaw]
 
+    def hang(self) -> None:
+        """Take a position that is doubted by itself for one that was had from the antenna's.
+
+        It is wrong by what the lever arm and the attitude are wrong, too: dp = [C l x] phi - C dl. A doubt of
+        its own would tell a filter that looks for the arm how short it is.
+        """
+        if "lever_arm" not in self.layout:
+            return
+        c, block = self.C_nb, self.layout.blocks["lever_arm"]
+        n, e, d = c @ self.block("lever_arm")
+        to = np.zeros((3, self.layout.n))
+        to[:, 6:9] = [[0.0, -d, e], [d, 0.0, -n], [-e, n, 0.0]]
+        to[:, block] = -c
+        p = self.P
+        shared = to @ p
+        p[:3, :] += shared
+        p[:, :3] += shared.T
+        p[:3, :3] += shared @ to.T
+
     def doubt(self, off: float, ceiling: Array) -> None:
         """Doubt what a bridge that misled the filter taught it: attitude and the biases of the sensors.
 

@@ -41,7 +41,7 @@ def assemble(
     axes : ndarray, shape (3, 3), optional
         Logged IMU axes to forward-right-down (rates only).
     lever_arm : ndarray, shape (3,), optional
-        Antenna from the IMU, FRD [m].
+        Antenna from the IMU, FRD [m]; None where nobody told it.
     grade : str, optional
         Named sensor grade.
     reference_clock : str, optional
@@ -93,7 +93,7 @@ def assemble(
         odometer=wheel,
         reference=truth,
         reference_clock=reference_clock or "imu",
-        lever_arm=np.zeros(3) if lever_arm is None else np.asarray(lever_arm, float),
+        lever_arm=None if lever_arm is None else np.asarray(lever_arm, float),
         grade=grade,
         notes=tuple(notes),
     )

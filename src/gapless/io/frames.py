@@ -53,7 +53,7 @@ def recording_from_frames(
     reference: pd.DataFrame | None = None,
     name: str = "recording",
     imu_axes: str = FRD,
-    antenna_lever_arm: Sequence[float] = (0.0, 0.0, 0.0),
+    antenna_lever_arm: Sequence[float] | None = None,
     grade: str | None = None,
     reference_clock: str | None = None,
 ) -> Recording:
@@ -73,8 +73,8 @@ def recording_from_frames(
     name : str
     imu_axes : str
         Where the logged x, y, z point.
-    antenna_lever_arm : sequence of 3 floats
-        Antenna from the IMU, FRD [m].
+    antenna_lever_arm : sequence of 3 floats, optional
+        Antenna from the IMU, FRD [m]; leave it out where it is not known.
     grade : str, optional
     reference_clock : str, optional
         "imu" or "gnss".
@@ -98,7 +98,7 @@ def recording_from_frames(
         odometer=None if odometer is None else _log("odometer", odometer, ODOMETER_COLUMNS),
         reference=None if reference is None else _log("reference", reference, REFERENCE_COLUMNS),
         axes=axes_matrix(imu_axes),
-        lever_arm=np.array(antenna_lever_arm, float),
+        lever_arm=None if antenna_lever_arm is None else np.array(antenna_lever_arm, float),
         grade=grade,
         reference_clock=reference_clock,
     )

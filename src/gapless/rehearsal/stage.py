@@ -85,6 +85,15 @@ class Rehearsing:
         """Those of the navigator."""
         return self.navigator.settings
 
+    def trust(self, settings: Settings) -> None:
+        """Go on with what was found of the receiver's stamps meanwhile; see `Navigator.trust`.
+
+        Parameters
+        ----------
+        settings : Settings
+        """
+        self.navigator.trust(settings)
+
     @property
     def journal(self) -> Journal:
         """Rows and innovations so far."""

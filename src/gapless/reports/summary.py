@@ -166,6 +166,23 @@ def _degrees(record: Any) -> dict[str, Any]:
     return found
 
 
+def unstated(scores: Mapping[str, Any]) -> str:
+    """What is to be said of epochs without a usable covariance; "" where there are none.
+
+    Parameters
+    ----------
+    scores : mapping
+        Of a summary.
+
+    Returns
+    -------
+    str
+    """
+    count = scores.get("unstated", 0)
+    what = "no covariance that is one (not finite, zero, singular or larger than the earth)"
+    return f"{count} epochs state {what}: they count as outside the ellipse" if count else ""
+
+
 def _scores(scores: Scores) -> dict[str, Any]:
     return {
         "truth": scores.truth,
@@ -178,6 +195,7 @@ def _scores(scores: Scores) -> dict[str, Any]:
         "outages_apart": len(scores.outages) - len(scores.pool),
         "horizontal_max": plain(scores.horizontal),
         "coverage_95": plain(scores.coverage),
+        "unstated": scores.unstated,
     }
 
 

@@ -10,7 +10,7 @@ from typing import Any
 from gapless.reports.numbers import DASH, distance, duration, known, measured, number, percent
 from gapless.reports.page import Tile
 from gapless.reports.quantities import channel, state
-from gapless.reports.summary import decision_of, decision_value
+from gapless.reports.summary import decision_of, decision_value, unstated
 
 Cell = str | tuple[str, str]
 """Text, or text with the class of its cell."""
@@ -180,6 +180,8 @@ def _pool(summary: Summary) -> str:
         )
     if apart:
         words.append(f"{apart} of {scores['outages']} set apart and left out of these figures.")
+    if said := unstated(scores):
+        words.append(f"{said}.")
     height = scores["height_offset"]
     if height is not None:
         high = f"{number(abs(height), 'm')} {'above' if height > 0.0 else 'below'}"

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from gapless.reports.numbers import distance, duration, known, measured, number, percent
-from gapless.reports.summary import decision_of, decision_value
+from gapless.reports.summary import decision_of, decision_value, unstated
 
 _WIDTH = 80
 
@@ -81,6 +81,8 @@ def _score_lines(summary: Mapping[str, Any]) -> Iterator[str]:
         angles = [known(aided[f"{a}_rmse_deg"]) for a in ("roll", "pitch", "heading")]
         if np.isfinite(angles).any():
             yield f"  roll, pitch, heading {', '.join(map(number, angles))} deg RMS"
+    if said := unstated(scores):
+        yield f"  {said}"
     if scores["height_offset"] is not None:
         side = "above" if scores["height_offset"] > 0.0 else "below"
         yield f"  height {number(abs(scores['height_offset']), 'm')} {side} the truth as a rule, taken off"

@@ -9,16 +9,25 @@ from typing import NamedTuple
 import numpy as np
 
 from gapless.alignment.clock import Offset
-from gapless.alignment.turns import far_off, turns
+from gapless.alignment.shift import Shift
+from gapless.alignment.turns import far_off, hint, strangers, turns
+from gapless.alignment.uneven import Jitter
 from gapless.errors import RecordingError
 from gapless.trip.recording import Recording
 from gapless.trip.solution import Decision
 
 VAGUE = 0.1
-"""An offset is not believed by itself where its standard deviation is larger [s]."""
-ONE_CLOCK = 0.1
-"""By how much the offsets of a receiver's positions and velocities differ, as a standard deviation [s]:
-it has one clock, but may report means."""
+"""An offset whose standard deviation is larger is a guess, and a note says so [s]."""
+PRIOR = 0.3
+"""Delays of receivers, and what parts the stamps of positions and velocities, as standard deviations [s]."""
+ONE_CLOCK = 0.003
+"""By how much stamps of one clock are apart, as a standard deviation [s]: the search is no better."""
+OFTEN = 0.7
+"""How often a receiver stamps its positions and velocities by one clock, before its log is looked at."""
+SYNCHRONOUS = 0.4
+"""How often a receiver's stamps are on the IMU's clock as they were logged."""
+NOTED = 0.02
+"""Stamps less uneven than this are as expected [s]."""
 MOST = 10.0
 """No receiver is later than this [s]; stamps that are, are wrong."""
 OTHER = {"position": "velocity", "velocity": "position"}
@@ -63,7 +72,15 @@ def base_offset(past: Recording, given: Mapping[str, float]) -> float:
     """
     if OTHER.keys() & given.keys():
         return 0.0
-    base = far_off(turns(past.imu, past.gnss))
+    told = turns(past.imu, past.gnss)
+    base = far_off(told)
+    if strangers(told) and not base:
+        base = hint(past.imu, past.gnss)
+        if not base:
+            raise RecordingError(
+                f"{past.name}: the turns of the GNSS course and those of the gyros are not the same at any "
+                "offset within ten minutes; put both on one clock, and check that they are of one drive"
+            )
     if abs(base) > MOST:
         way, cure = ("later", "subtract") if base < 0.0 else ("earlier", "add")
         leap = " (GPS time is 18 s ahead of UTC)" if abs(abs(base) - 18.0) < 1.0 else ""
@@ -75,7 +92,10 @@ def base_offset(past: Recording, given: Mapping[str, float]) -> float:
 
 
 def believed(channel: str, clocks: Clocks) -> Offset:
-    """An offset as it was found; if that is vague, weighed against the receiver's other channel, or the base.
+    """An offset as it was found, drawn to what is likely by as much as the data leave open.
+
+    Velocities tell their clock from accelerations, near the base; positions tell by how much theirs is
+    another, and mostly it is not. An odometer has a clock of its own.
 
     Parameters
     ----------
@@ -87,18 +107,70 @@ def believed(channel: str, clocks: Clocks) -> Offset:
     -------
     Offset
     """
-    given, base, found = clocks
-    own, other = found[channel], OTHER.get(channel, "")
-    if own.sd < VAGUE:
-        return own
-    if other in given:
-        clock = given[other]
-    elif other in found and found[other].sd < VAGUE:
-        clock = found[other].value
-    else:
-        return own._replace(value=base if channel in OTHER else 0.0)
-    share = ONE_CLOCK**2 / (ONE_CLOCK**2 + own.sd**2)
-    return own._replace(value=clock + share * (own.value - clock), sd=ONE_CLOCK * math.sqrt(1.0 - share))
+    own = clocks.found[channel]
+    near = clocks.base if channel in OTHER else 0.0
+    if channel == "position" and "velocity" in clocks.given:
+        gap, sd = together(own.value - clocks.given["velocity"], own.sd)
+        return own._replace(value=clocks.given["velocity"] + gap, sd=sd)
+    if channel == "position" and "velocity" in clocks.found:
+        first = believed("velocity", clocks)
+        raw = clocks.found["velocity"]
+        gap, sd = together(own.value - raw.value, own.sd)
+        return own._replace(value=first.value + gap, sd=math.hypot(first.sd, sd))
+    if not math.isfinite(own.sd):
+        return own._replace(value=near, sd=PRIOR if channel in OTHER else own.sd)
+    value, sd = together(own.value - near, own.sd, SYNCHRONOUS if channel in OTHER and not near else 0.0)
+    return own._replace(value=near + value, sd=sd)
+
+
+def together(gap: float, sd: float, often: float = OFTEN) -> tuple[float, float]:
+    """What parts two stamps: nothing, if they are of one clock, or what was found.
+
+    Parameters
+    ----------
+    gap, sd : float
+        Found, and its standard deviation [s]; inf where nothing was.
+    often : float
+        Probability that they are of one clock, before it was looked.
+
+    Returns
+    -------
+    gap, sd : float
+        Mean and deviation of the mixture of both, each as likely as it explains what was found.
+    """
+    if not math.isfinite(sd):
+        return 0.0, math.sqrt(1.0 - often) * PRIOR
+    means, variances, logs = [], [], []
+    for share, prior in ((often, ONE_CLOCK), (1.0 - often, PRIOR)):
+        total = prior**2 + sd**2
+        means.append(gap * prior**2 / total)
+        variances.append(prior**2 * sd**2 / total)
+        logs.append(math.log(max(share, 1e-300)) - 0.5 * (math.log(total) + gap**2 / total))
+    weights = [math.exp(one - max(logs)) for one in logs]
+    weights = [w / sum(weights) for w in weights]
+    mean = sum(w * m for w, m in zip(weights, means, strict=True))
+    spread = sum(w * (v + (m - mean) ** 2) for w, m, v in zip(weights, means, variances, strict=True))
+    return mean, math.sqrt(spread)
+
+
+def doubt(clocks: Clocks) -> tuple[float, float]:
+    """How far the receiver's stamps are not known.
+
+    Parameters
+    ----------
+    clocks : Clocks
+
+    Returns
+    -------
+    common, apart : float
+        Standard deviations of what positions and velocities share, and of what parts them [s].
+    """
+    known = {c: believed(c, clocks) for c in OTHER if c in clocks.found}
+    common = known["velocity"].sd if "velocity" in known else 0.0
+    whole = known["position"].sd if "position" in known else 0.0
+    if "velocity" not in known and "velocity" not in clocks.given:
+        return whole, 0.0
+    return common, math.sqrt(max(whole**2 - common**2, 0.0)) if "position" in known else common
 
 
 def clock_decision(channel: str, clocks: Clocks, span: float) -> Decision:
@@ -118,17 +190,125 @@ def clock_decision(channel: str, clocks: Clocks, span: float) -> Decision:
     name, base = f"clock offset, {channel}", clocks.base if channel in OTHER else 0.0
     if channel in clocks.given:
         return Decision(name, clocks.given[channel], "s", "user", "given in the configuration")
-    taken = believed(channel, clocks) if channel in clocks.found else None
+    own = clocks.found.get(channel)
     turned = f"{base:+.2f} s by the turns that both tell of; " if base else ""
-    if taken is None or not np.isfinite(taken.sd):
+    if own is None:
         source, what = ("data", "no finer") if base else ("default", "stamps taken as logged")
         return Decision(name, base, "s", source, f"{turned}the motion says too little; {what}")
-    own = clocks.found[channel]
+    taken = believed(channel, clocks)
+    value, sd = round(taken.value, 4), taken.sd if np.isfinite(taken.sd) else None
+    if not np.isfinite(own.sd):
+        if channel == "position" and OTHER[channel] in clocks.found and taken.value != base:
+            return Decision(name, value, "s", "data", f"{turned}that of the receiver's velocities", sd)
+        source, what = ("data", "no finer") if base else ("default", "stamps taken as logged")
+        return Decision(name, value, "s", source, f"{turned}the motion says too little; {what}", sd)
     evidence = (
         f"{turned}{own.epochs} readings against the inertial motion of {span:.0f} s; "
         f"misfit {100.0 * (1.0 - 1.0 / own.gain):.1f} % less than without"
     )
-    if own.sd >= VAGUE:
-        what = "not acted on" if taken.sd == own.sd else "weighed against the receiver's other stamps"
-        evidence = f"found {own.value:+.3f} ± {own.sd:.2f} s, too vague by itself: {what}; {evidence}"
-    return Decision(name, round(taken.value, 4), "s", "data", evidence, taken.sd)
+    if abs(own.value - taken.value) > 0.5 * own.sd or own.sd >= VAGUE:
+        what = "weighed against " + (
+            "the receiver's other stamps" if channel == "position" else "none at all"
+        )
+        evidence = f"found {own.value:+.3f} ± {own.sd:.3f} s, {what}; {evidence}"
+    return Decision(name, value, "s", "data", evidence, sd)
+
+
+def parting(shifts: tuple[Shift, ...]) -> tuple[float, float, float]:
+    """Drift of a receiver's clock, from all that it stamps.
+
+    Parameters
+    ----------
+    shifts : tuple of Shift
+        At least one.
+
+    Returns
+    -------
+    drift, sd : float
+        Seconds in a second. Deviations of least squares are doubled: simulated drives have them at up to
+        twice as much.
+    since : float
+        The time for which offsets were found [s].
+    """
+    clear = [s.drift / (2.0 * s.drift_sd) for s in shifts]
+    weights = np.array([s.drift_sd**-2.0 for s in shifts])
+    drift, sd = float(weights @ [s.drift for s in shifts] / weights.sum()), 2.0 / math.sqrt(weights.sum())
+    agree = min(clear) * max(clear) > 0.0
+    least = min(abs(c) for c in clear)
+    since = min(shifts, key=lambda s: s.sd).middle
+    return (math.copysign(min(abs(drift), least * sd), drift) if agree else 0.0), sd, since
+
+
+def drift_decision(drift: float, sd: float, span: float) -> Decision:
+    """That the receiver's clock and the IMU's part.
+
+    Parameters
+    ----------
+    drift, sd : float
+        Seconds in a second.
+    span : float
+        Seconds that were looked at.
+
+    Returns
+    -------
+    Decision
+    """
+    evidence = f"over {span:.0f} s the offset changes by {drift * span:+.3f} s; stamps are corrected by it"
+    return Decision("clock drift", round(1e6 * drift, 1), "ppm", "data", evidence, 1e6 * sd)
+
+
+def jitter_decisions(jitter: Jitter) -> list[Decision]:
+    """How uneven stamps are, where it is clear.
+
+    Parameters
+    ----------
+    jitter : Jitter
+
+    Returns
+    -------
+    list of Decision
+        None or one.
+    """
+    if not jitter.white and not jitter.lasting:
+        return []
+    evidence = (
+        f"{jitter.readings} positions are off by {jitter.along:.3f} s of driving along the track and by "
+        f"{jitter.across:.3f} across it; {jitter.white:.3f} s from one to the next, {jitter.lasting:.3f} s "
+        "over some seconds"
+    )
+    whole = math.hypot(jitter.white, jitter.lasting)
+    return [Decision("jitter of stamps", round(whole, 3), "s", "data", evidence)]
+
+
+def clock_notes(clocks: Clocks, jitter: Jitter, drift: float) -> tuple[str, ...]:
+    """What a user must read of clocks.
+
+    Parameters
+    ----------
+    clocks : Clocks
+    jitter : Jitter
+    drift : float
+        Of the receiver's clock [s/s]; 0 where none was found.
+
+    Returns
+    -------
+    tuple of str
+    """
+    notes = []
+    most = math.hypot(*doubt(clocks))
+    if most >= VAGUE:
+        notes.append(
+            f"the receiver's clock is known to {most:.2f} s only; positions are stated as uncertain as "
+            "the car drives far in that time; if it is known, say --clock position=... --clock velocity=..."
+        )
+    if drift:
+        notes.append(
+            f"the receiver's clock and the IMU's part by {1e6 * drift:.0f} ppm; its stamps are corrected"
+        )
+    uneven = math.hypot(jitter.white, jitter.lasting)
+    if uneven > NOTED:
+        notes.append(
+            f"the receiver's stamps are uneven by {uneven:.3f} s, and that is stated; by the receiver's own "
+            "time they would not be"
+        )
+    return tuple(notes)

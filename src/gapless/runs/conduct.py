@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 
+from msgspec import structs
+
 from gapless.errors import ConfigError
 from gapless.fold.manner import Manner
 from gapless.fold.navigator import Navigator
@@ -57,8 +59,21 @@ def settings_for(
     -------
     Settings
     """
-    built = settings(system, recording, decided.offsets, decided.mounting, decided.gyro_density, 1.0 / rate)
-    return replace(built, lateness=max(built.lateness, lateness))
+    system = decided.used(system)
+    use = system.gnss
+    share = use.wander if decided.wander is None else decided.wander
+    use = structs.replace(use, jitter=max(use.jitter, decided.jitter), wander=share)
+    built = settings(
+        structs.replace(system, gnss=use),
+        recording,
+        decided.offsets,
+        decided.mounting,
+        decided.gyro_density,
+        1.0 / rate,
+        decided.doubt,
+    )
+    arm_doubt = built.arm_doubt if decided.arm is None else decided.arm.doubt
+    return replace(built, lateness=max(built.lateness, lateness), arm_doubt=arm_doubt)
 
 
 def navigator_for(

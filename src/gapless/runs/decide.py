@@ -3,56 +3,25 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import NamedTuple
+from functools import partial
 
 import numpy as np
-from msgspec import structs
 
-from gapless import earth
-from gapless.alignment.clock import Curve, Offset, offset, path_curve, velocity_curve
-from gapless.fold.feed import events
-from gapless.fold.journal import Journal
-from gapless.fold.navigator import Navigator
-from gapless.runs.clocks import Clocks, base_offset, believed, clock_decision
+from gapless.filters.stamp_doubt import SURE, Doubt
+from gapless.fold.feed import DRIFT
+from gapless.runs.arms import Arm, settle
+from gapless.runs.clocks import clock_notes, doubt
+from gapless.runs.first_pass import FirstPass, Mounting
 from gapless.runs.prepare import graded
 from gapless.scenarios import Outage
-from gapless.sensors.vibration import gyro_density
-from gapless.systems.build import budget, settings, stamps
-from gapless.systems.learning import BridgeUse
-from gapless.systems.recipe import Adaptation, RehearsalUse, System
-from gapless.trip.recording import Array, Recording, Trajectory
+from gapless.systems.build import budget
+from gapless.systems.recipe import System
+from gapless.trip.recording import Recording
 from gapless.trip.solution import Decision
 from gapless.units import DEG
 
 DECISIONS_TAKEN_LATE = "decisions taken late"
 """Names the decision that tells that an outage had begun before anything could be decided."""
-CHANNELS = ("position", "velocity", "odometer")
-ENOUGH = 600.0
-"""Seconds of navigation after which a first pass learns little more."""
-JITTER = (0.3, 0.1, 0.05, 0.05, 0.05, 0.05)
-"""How far stamps are trusted from pass to pass [s]: a clock still unknown must not bend the path."""
-
-
-WINDOWS = (100.0, 200.0)
-"""Windows in which a path is compared with positions [s]: long, for positions lag in their changes."""
-LOOSE = 30.0
-"""Standard deviation of positions in a first pass that has velocities [m]."""
-SETTLED = 0.008
-"""Passes end when no offset moves by more [s], or by more than two of its standard deviations: each
-goes about two thirds of what is left."""
-
-
-class Mounting(NamedTuple):
-    """Pitch and yaw of the car's forward axis in the box.
-
-    Parameters
-    ----------
-    angles, sd : ndarray, shape (2,)
-        [rad]
-    """
-
-    angles: Array
-    sd: Array
 
 
 @dataclass(frozen=True)
@@ -69,6 +38,16 @@ class Decided:
     decisions : tuple of Decision
     span : float
         Seconds that the first pass could navigate; 0 where the past held too little.
+    doubt : Doubt
+        Of the receiver's stamps.
+    notes : tuple of str
+        Sentences that a user must read.
+    jitter : float
+        Of the receiver's stamps from reading to reading, where it is clear [s]; else 0.
+    wander : float, optional
+        Share of positions' stated deviations that wanders, where velocities tell it.
+    arm : Arm, optional
+        Where the antenna is; the recipe's word, else the recording's, if not given.
     """
 
     offsets: dict[str, float]
@@ -76,6 +55,24 @@ class Decided:
     gyro_density: float
     decisions: tuple[Decision, ...]
     span: float
+    doubt: Doubt = SURE
+    notes: tuple[str, ...] = ()
+    jitter: float = 0.0
+    wander: float | None = None
+    arm: Arm | None = None
+
+    def used(self, system: System) -> System:
+        """The system with what was decided of its lever arm.
+
+        Parameters
+        ----------
+        system : System
+
+        Returns
+        -------
+        System
+        """
+        return system if self.arm is None else self.arm.used(system)
 
 
 def decide(recording: Recording, system: System, horizon: float = np.inf) -> Decided:
@@ -94,14 +91,27 @@ def decide(recording: Recording, system: System, horizon: float = np.inf) -> Dec
     Decided
     """
     past = recording if horizon == np.inf else recording.slice(-np.inf, horizon)
-    passes = _FirstPass(past, system)
-    passes.run()
+    passes, arm = settle(past, system, partial(_first_pass, past))
     decisions = (
+        arm.decision,
         noise_decision(system, passes.density, stated=recording.grade),
         *passes.clock_decisions(),
+        *passes.wander_decisions(),
         *passes.mounting_decisions(),
     )
-    return Decided(passes.offsets, passes.mounting, passes.density, decisions, passes.span)
+    clocks = passes.clocks
+    return Decided(
+        passes.offsets,
+        passes.mounting,
+        passes.density,
+        decisions,
+        passes.span,
+        Doubt(*doubt(clocks), passes.jitter.lasting),
+        clock_notes(clocks, passes.jitter, passes.offsets.get(DRIFT, 0.0)) if passes.span else (),
+        passes.jitter.white,
+        passes.share,
+        arm,
+    )
 
 
 def decide_before(open_sky: Recording, system: System, outages: tuple[Outage, ...]) -> Decided:
@@ -139,128 +149,10 @@ def decide_before(open_sky: Recording, system: System, outages: tuple[Outage, ..
     return decided
 
 
-class _FirstPass:
-    """Navigates the past until its clock offsets settle."""
-
-    def __init__(self, past: Recording, system: System) -> None:
-        self.past, self.system = past, system
-        self.given = {c: v for c in CHANNELS if (v := getattr(system.clock, c)) != "auto"}
-        self.base = base_offset(past, self.given)
-        self.offsets = {"position": self.base, "velocity": self.base, "odometer": 0.0} | self.given
-        self.found: dict[str, Offset] = {}
-        self.mounting = _given_mounting(system)
-        self.span = 0.0
-        self.learned = False
-        self.density = gyro_density(past.imu)
-        # an odometer's clock may drift: its offset is the mean over all there is
-        self.enough = ENOUGH if past.odometer is None else np.inf
-
-    def run(self) -> None:
-        """Up to six passes; each starts from the offsets of the one before."""
-        for jitter in JITTER:
-            navigator = self._navigate(jitter)
-            if len(navigator.journal.times) < 150:  # half a minute
-                return
-            if self._learn(navigator):
-                return
-
-    def _navigate(self, jitter: float) -> Navigator:
-        use = self.system.gnss
-        # positions at a wrong time would bend the path that is to time them; velocities hold it
-        floor = LOOSE if self.past.gnss.has_velocity else use.position_floor
-        gnss = structs.replace(use, jitter=jitter, position_floor=max(floor, use.position_floor))
-        sensors = tuple(s for s in self.system.sensors if s != "odometer")  # it would vouch for itself
-        coarse = structs.replace(self.system.filter, tick=0.2, moments="taylor")
-        plain = structs.replace(
-            self.system, adaptation=Adaptation(), bridge=BridgeUse(), rehearsal=RehearsalUse()
-        )
-        system = structs.replace(plain, gnss=gnss, filter=coarse, sensors=sensors)
-        navigator = Navigator(
-            settings(system, self.past, self.offsets, _given_mounting(system), self.density, coarse.tick)
-        )
-        for event in events(self.past, stamps(system, self.offsets), thin=0.45):
-            navigator.step(event)
-            if navigator.aligned and navigator.time > navigator.journal.alignments[0][0] + self.enough:
-                break
-        return navigator
-
-    def _learn(self, navigator: Navigator) -> bool:
-        """Take the estimates of a pass; whether they settled."""
-        path, (blocks, sds) = navigator.journal.trajectory(), navigator.journal.blocks()
-        self.span = float(path.time[-1] - path.time[0])
-        self._learn_mounting(blocks, sds, _before_knocks(navigator.journal))
-        settled, before = True, dict(self.offsets)
-        self.found = self._estimates(path, blocks)
-        for channel, estimate in self.found.items():
-            self.offsets[channel] = believed(channel, self._clocks).value
-            settled &= abs(self.offsets[channel] - before[channel]) < max(SETTLED, 2.0 * estimate.sd)
-        return settled
-
-    @property
-    def _clocks(self) -> Clocks:
-        return Clocks(self.given, self.base, self.found)
-
-    def _estimates(self, path: Trajectory, blocks: dict[str, Array]) -> dict[str, Offset]:
-        gnss, odometer, base = self.past.gnss, self.past.odometer, self.base
-        time, found = gnss.time + base, {}
-        fixed = np.isfinite(gnss.lla).all(axis=1)
-        heard = np.isfinite(gnss.v_n).all(axis=1)
-        if "velocity" not in self.given and heard.any():
-            curve = velocity_curve(path, blocks["accel_bias"], self.past.imu)
-            found["velocity"] = offset(curve, time[heard], gnss.v_n[heard, :2], 1).later(base)
-        if "position" not in self.given and fixed.any():
-            here = earth.lla_to_ned(gnss.lla[fixed], gnss.lla[fixed][0])[:, :2]
-            windows = tuple(sorted({min(w, self.span) for w in WINDOWS}))
-            found["position"] = offset(
-                path_curve(path), time[fixed], here, 1, windows=windows, correlation=5.0
-            ).later(base)
-        if odometer is not None and "odometer" not in self.given:
-            speed = np.hypot(path.v_n[:, 0], path.v_n[:, 1])[:, None]
-            found["odometer"] = offset(Curve(path.time, speed), odometer.time, odometer.speed[:, None], 1)
-        return found
-
-    def _learn_mounting(self, blocks: dict[str, Array], sds: dict[str, Array], row: int) -> None:
-        if "mounting" not in blocks or self._mounting_given():
-            return
-        sd = np.maximum(2.0 * sds["mounting"][row], 0.5 * DEG)
-        prior = _given_mounting(self.system)
-        self.mounting = Mounting(blocks["mounting"][row].copy(), np.minimum(sd, prior.sd))
-        self.learned = True
-
-    def _mounting_given(self) -> bool:
-        return self.system.mounting.pitch != "auto" and self.system.mounting.yaw != "auto"
-
-    def clock_decisions(self) -> list[Decision]:
-        """One decision for each channel that the recording has."""
-        present = {"position": True, "velocity": self.past.gnss.has_velocity}
-        present["odometer"] = self.past.odometer is not None
-        chosen = [c for c in CHANNELS if present[c]]
-        return [clock_decision(c, self._clocks, self.span) for c in chosen]
-
-    def mounting_decisions(self) -> list[Decision]:
-        """Pitch and yaw of the car's forward axis in the box."""
-        if not ({"nonholonomic"} & set(self.system.constraints)):
-            return []
-        angles = tuple(round(float(a) / DEG, 3) for a in self.mounting.angles)
-        sd = float(np.max(self.mounting.sd)) / DEG
-        name = "mounting pitch and yaw, first estimate"
-        if self._mounting_given():
-            return [Decision(name, angles, "deg", "user", "given in the configuration", sd)]
-        if not self.learned:
-            return [Decision(name, angles, "deg", "default", "too little motion; a state from zero", sd)]
-        evidence = f"where the car does not slip over {self.span:.0f} s; states of the filter from here on"
-        return [Decision(name, angles, "deg", "data", evidence, sd)]
-
-
-def _before_knocks(journal: Journal) -> int:
-    """The last row at which the box sat as it did at first."""
-    return int(np.searchsorted(journal.times, journal.knocks[0][0])) - 1 if journal.knocks else -1
-
-
-def _given_mounting(system: System) -> Mounting:
-    m = system.mounting
-    angles = np.array([0.0 if a == "auto" else a * DEG for a in (m.pitch, m.yaw)])
-    return Mounting(angles, np.array([m.pitch_sd, m.yaw_sd]) * DEG)
+def _first_pass(past: Recording, system: System) -> FirstPass:
+    passes = FirstPass(past, system)
+    passes.run()
+    return passes
 
 
 def noise_decision(system: System, density: float, stated: str | None = None) -> Decision:

@@ -8,7 +8,7 @@ from itertools import pairwise
 import numpy as np
 
 from gapless.fold.feed import events
-from gapless.runs.conduct import Finish, Folding, as_built, navigator_for
+from gapless.runs.conduct import Finish, Folding, as_built, navigator_for, settings_for
 from gapless.runs.decide import Decided, decide, decide_before
 from gapless.runs.prepare import graded, prepared, withhold_from
 from gapless.runs.tell import collect
@@ -69,7 +69,10 @@ def fuse(
     legs = _on_the_way(open_sky, system) if causal else _at_once(open_sky, system, outages, decided)
     navigator: Folding | None = None
     for begin, end, decided in legs:
-        navigator = navigator or navigator_for(open_sky, system, decided, rate, SLACK * causal, finish)
+        if navigator is None:
+            navigator = navigator_for(open_sky, system, decided, rate, SLACK * causal, finish)
+        else:
+            navigator.trust(settings_for(open_sky, system, decided, rate))
         feed = events(open_sky, stamps(system, decided.offsets), begin, end)
         fold(navigator, feed, recording.start, progress)
     assert navigator is not None

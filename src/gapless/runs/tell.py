@@ -7,13 +7,13 @@ import numpy as np
 from gapless.errors import AlignmentError
 from gapless.fold.journal import Journal
 from gapless.rehearsal.stage import Rehearsing
+from gapless.runs.arms import at_end
 from gapless.runs.conduct import Folding
 from gapless.runs.decide import Decided
 from gapless.scenarios import Outage
-from gapless.systems.build import lever_arm
 from gapless.systems.denoising import denoiser
 from gapless.systems.recipe import System
-from gapless.trip.recording import Recording
+from gapless.trip.recording import Note, Recording
 from gapless.trip.solution import Decision, Solution
 
 
@@ -61,7 +61,7 @@ def collect(
         decisions=(
             *denoise_decisions(system),
             *static_decisions(recording, system),
-            *decided.decisions,
+            *(at_end(d, states, sds) for d in decided.decisions),
             *_alignments(journal, recording.start),
             *_stops(journal),
             *(d for bridge in navigator.bridges for d in bridge.decisions(recording.start)),
@@ -69,7 +69,7 @@ def collect(
         ),
         outages=tuple((o.start, o.until) for o in outages),
         start=recording.start,
-        notes=recording.notes,
+        notes=(*recording.notes, *(Note("clocks", note, 0) for note in decided.notes)),
         learned=tuple(m for bridge in navigator.bridges if (m := bridge.learned()) is not None),
         exhibits=(
             *(e for bridge in navigator.bridges if (e := bridge.exhibit()) is not None),
@@ -95,7 +95,7 @@ def denoise_decisions(system: System) -> tuple[Decision, ...]:
 
 
 def static_decisions(recording: Recording, system: System) -> list[Decision]:
-    """What is settled without navigating: sensors, noise, lever arm.
+    """What is settled without navigating: the sensors.
 
     Parameters
     ----------
@@ -107,17 +107,11 @@ def static_decisions(recording: Recording, system: System) -> list[Decision]:
     list of Decision
     """
     imu, gnss = recording.imu, recording.gnss
-    lever = tuple(float(a) for a in lever_arm(system, recording))
     rate = 1.0 / float(np.median(np.diff(gnss.time))) if len(gnss) > 1 else 0.0
-    found = [
+    return [
         Decision("IMU rate", round(imu.rate, 2), "Hz", "data", f"{len(imu)} samples, median interval"),
         Decision("GNSS rate", round(rate, 2), "Hz", "data", f"{len(gnss)} fixes, {_kinds(recording)}"),
     ]
-    if system.gnss.lever_arm is not None:
-        return [*found, Decision("antenna lever arm", lever, "m", "user", "given in the configuration")]
-    if np.any(recording.lever_arm):
-        return [*found, Decision("antenna lever arm", lever, "m", "recording", "stated by the recording")]
-    return [*found, Decision("antenna lever arm", lever, "m", "default", "none is stated; taken as zero")]
 
 
 def _kinds(recording: Recording) -> str:

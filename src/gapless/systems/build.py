@@ -10,6 +10,7 @@ import numpy as np
 from gapless.alignment.coarse import Aligner
 from gapless.errors import ConfigError
 from gapless.filters.adaptation.registry import KINDS, RULES, chain
+from gapless.filters.stamp_doubt import SURE, Doubt
 from gapless.fold.settings import Settings
 from gapless.inertial.layout import Layout
 from gapless.measurements.base import Constraint, Sensor
@@ -20,6 +21,7 @@ from gapless.measurements.spread import Spread
 from gapless.measurements.stillness import Stillness
 from gapless.sensors import grade
 from gapless.systems.adjust import named
+from gapless.systems.arm import lever_arm
 from gapless.systems.learning import bridges
 from gapless.systems.recipe import Imu, System
 from gapless.trip.recording import Array, Recording
@@ -36,6 +38,7 @@ def settings(
     mounting: tuple[Array, Array],
     gyro_density: float = 0.0,
     row: float = 0.1,
+    doubt: Doubt = SURE,
 ) -> Settings:
     """Settings of a navigator.
 
@@ -52,6 +55,8 @@ def settings(
         What the log's gyros show of vibration [rad/sqrt(s)].
     row : float
         Time between journal rows [s].
+    doubt : Doubt
+        Of the receiver's stamps.
 
     Returns
     -------
@@ -60,7 +65,7 @@ def settings(
     imu = budget(system.imu, gyro_density)
     names = states(system, recording)
     angles, angle_sd = mounting
-    sensors, lateness = _sensors(system, recording, angles), _lateness(stamps(system, offsets))
+    sensors, lateness = _sensors(system, recording, angles), _lateness(stamps(system, offsets), recording)
     rules = system.adaptation
     parts = [(part.bridge, part.learner) for part in (system, *candidates(system))]
     spoken = tuple(b for use, who in parts for b in bridges(use, who, sensors, lateness))
@@ -76,7 +81,7 @@ def settings(
             "gyro_scale": imu["gyro_scale_sd"],
             "accel_scale": imu["accel_scale_sd"],
             "gravity": system.imu.gravity_sd,
-            "lever_arm": 1.0,
+            "lever_arm": np.array(system.gnss.lever_arm_sd),
             "mounting": angle_sd,
             "axle": system.nonholonomic.axle_sd,
             "odometer_scale": system.odometer.scale_sd,
@@ -96,6 +101,7 @@ def settings(
         misalignment=float(imu["misalignment"]),
         wander_time=system.gnss.wander_time,
         cubature=system.filter.moments == "cubature",
+        doubt=doubt,
         open_loop=system.filter.correction == "feedforward",
     )
 
@@ -143,9 +149,14 @@ def stamps(system: System, offsets: Mapping[str, float]) -> dict[str, float]:
     return {**offsets, "velocity": offsets.get("velocity", 0.0) + 0.5 * system.gnss.velocity_averaging}
 
 
-def _lateness(offsets: Mapping[str, float]) -> float:
+def _lateness(offsets: Mapping[str, float], recording: Recording) -> float:
     """How late readings arrive, with some slack; 0 where none does."""
-    most = max(0.0, *(-late for late in offsets.values()))
+    more = offsets.get("drift", 0.0) * (recording.gnss.time[[0, -1]] - offsets.get("since", 0.0))
+    most = max(
+        0.0,
+        *(-late for name, late in offsets.items() if name == "odometer"),
+        *(-late - m for name, late in offsets.items() if name in ("position", "velocity") for m in more),
+    )
     return most + 0.05 if most > 0.0 else 0.0
 
 
@@ -217,23 +228,6 @@ def _initial(names: tuple[str, ...], angles: Array, system: System, recording: R
         "lever_arm": lever_arm(system, recording),
     }
     return {name: value for name, value in known.items() if name in names}
-
-
-def lever_arm(system: System, recording: Recording) -> Array:
-    """Antenna from the IMU: the recipe's word, else the recording's.
-
-    Parameters
-    ----------
-    system : System
-    recording : Recording
-
-    Returns
-    -------
-    ndarray, shape (3,)
-        FRD [m].
-    """
-    given = system.gnss.lever_arm
-    return recording.lever_arm if given is None else np.array(given)
 
 
 def _sensors(system: System, recording: Recording, angles: Array) -> dict[str, Sensor]:

@@ -55,7 +55,8 @@ class GnssUse(Struct, forbid_unknown_fields=True, frozen=True):
     `wander` is the share of a position's standard deviation that is not noise but lasts for about
     `wander_time` [s]; it widens what is stated, not what is weighed. `velocity_averaging` is the
     length of the epoch that a velocity is the mean of [s], 0 for an instant; the clock offset stays
-    the equivalent instantaneous one. `jitter` is how uneven stamps are [s].
+    the equivalent instantaneous one. `jitter` is how uneven stamps are [s]. `lever_arm_sd` is how far
+    from the box an antenna may be, forward, right and down, where the filter looks for it [m].
     """
 
     wander: Annotated[float, Meta(ge=0.0, le=1.0)] = 0.6
@@ -67,6 +68,7 @@ class GnssUse(Struct, forbid_unknown_fields=True, frozen=True):
     velocity_averaging: NonNegative = 0.0
     jitter: NonNegative = 0.02
     lever_arm: tuple[float, float, float] | None = None
+    lever_arm_sd: tuple[Positive, Positive, Positive] = (1.5, 1.0, 1.5)
 
 
 if TYPE_CHECKING:

@@ -6,7 +6,7 @@ Time is float seconds on the recording's IMU clock; a GNSS or odometer stamp is 
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import dataclass, fields, replace
 from typing import Any, Self
 
 import numpy as np
@@ -222,8 +222,8 @@ class Recording:
         Truth to score against; never used to navigate.
     reference_clock : str
         "imu" or "gnss": whose clock the reference's stamps are on.
-    lever_arm : ndarray, shape (3,)
-        Antenna from the IMU, FRD [m].
+    lever_arm : ndarray, shape (3,), optional
+        Antenna from the IMU, FRD [m]; None where nobody told it, which is not the same as zero.
     grade : str, optional
         Named sensor grade, if the recording states one.
     notes : tuple of Note
@@ -236,7 +236,7 @@ class Recording:
     odometer: Odometer | None = None
     reference: Trajectory | None = None
     reference_clock: str = "imu"
-    lever_arm: Array = field(default_factory=lambda: np.zeros(3))
+    lever_arm: Array | None = None
     grade: str | None = None
     notes: tuple[Note, ...] = ()
 

@@ -137,7 +137,8 @@ def _gnss(recording: Recording) -> dict[str, Array]:
 
 def _settings(recording: Recording) -> str:
     lines = [f"name = {_text(recording.name)}", f'imu_axes = "{FRD}"']
-    lines.append(f"antenna_lever_arm = {[float(x) for x in recording.lever_arm]}")
+    if recording.lever_arm is not None:
+        lines.append(f"antenna_lever_arm = {[float(x) for x in recording.lever_arm]}")
     lines.append(f'reference_clock = "{recording.reference_clock}"')
     if recording.grade is not None:
         lines.append(f"grade = {_text(recording.grade)}")
