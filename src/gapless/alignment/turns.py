@@ -104,7 +104,8 @@ def strangers(told: Turns) -> bool:
     bool
         False where there are too few turns, as on a motorway.
     """
-    return told.both >= _TOLD and float(told.explained.max()) < _STRANGE
+    enough = told.both >= _TOLD and bool((told.explained > 0.0).all())
+    return enough and float(told.explained.max()) < _STRANGE
 
 
 def hint(imu: Imu, gnss: Gnss) -> float:
