@@ -10,7 +10,7 @@ import numpy as np
 
 from gapless.alignment.clock import Offset
 from gapless.alignment.shift import Shift
-from gapless.alignment.turns import far_off, hint, strangers, turns
+from gapless.alignment.turns import far_off, hint, puzzling, strangers, turns
 from gapless.alignment.uneven import Jitter
 from gapless.errors import RecordingError
 from gapless.trip.recording import Recording
@@ -74,9 +74,9 @@ def base_offset(past: Recording, given: Mapping[str, float]) -> float:
         return 0.0
     told = turns(past.imu, past.gnss)
     base = far_off(told)
-    if strangers(told) and not base:
+    if puzzling(told) and not base:
         base = hint(past.imu, past.gnss)
-        if not base:
+        if strangers(told) and not base:
             raise RecordingError(
                 f"{past.name}: the turns of the GNSS course and those of the gyros are not the same at any "
                 "offset within ten minutes; put both on one clock, and check that they are of one drive"
@@ -214,29 +214,28 @@ def clock_decision(channel: str, clocks: Clocks, span: float) -> Decision:
     return Decision(name, value, "s", "data", evidence, sd)
 
 
-def parting(shifts: tuple[Shift, ...]) -> tuple[float, float, float]:
-    """Drift of a receiver's clock, from all that it stamps.
+def parting(shifts: Mapping[str, Shift]) -> tuple[float, float, float]:
+    """Drift of a receiver's clock: that of its velocities, for positions are held against these.
 
     Parameters
     ----------
-    shifts : tuple of Shift
-        At least one.
+    shifts : mapping of str to Shift
+        By channel.
 
     Returns
     -------
     drift, sd : float
-        Seconds in a second. Deviations of least squares are doubled: simulated drives have them at up to
-        twice as much.
+        Seconds in a second; zero where positions part from velocities, for that is no clock. Deviations of
+        least squares are doubled: simulated drives have them at up to twice as much.
     since : float
         The time for which offsets were found [s].
     """
-    clear = [s.drift / (2.0 * s.drift_sd) for s in shifts]
-    weights = np.array([s.drift_sd**-2.0 for s in shifts])
-    drift, sd = float(weights @ [s.drift for s in shifts] / weights.sum()), 2.0 / math.sqrt(weights.sum())
-    agree = min(clear) * max(clear) > 0.0
-    least = min(abs(c) for c in clear)
-    since = min(shifts, key=lambda s: s.sd).middle
-    return (math.copysign(min(abs(drift), least * sd), drift) if agree else 0.0), sd, since
+    one = shifts.get("velocity", shifts.get("position"))
+    if one is None:
+        return 0.0, math.inf, 0.0
+    other = shifts["position"] if "position" in shifts and "velocity" in shifts else None
+    apart = other is not None and abs(other.drift) > max(0.5 * abs(one.drift), 4.0 * other.drift_sd)
+    return (0.0 if apart else one.drift), 2.0 * one.drift_sd, one.middle
 
 
 def drift_decision(drift: float, sd: float, span: float) -> Decision:

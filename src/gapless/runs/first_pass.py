@@ -97,7 +97,7 @@ class FirstPass:
         """Whether the clocks were just found to part."""
         if self.given or not self.shifts:
             return False
-        drift, self.drift_sd, since = parting(tuple(self.shifts.values()))
+        drift, self.drift_sd, since = parting(self.shifts)
         least = PARTING if DRIFT not in self.offsets else 1.0
         if abs(drift) < least * self.drift_sd or abs(drift) * self.span < SETTLED:
             return False

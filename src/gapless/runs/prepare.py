@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import replace
 
+from msgspec import structs
+
 from gapless.errors import ConfigError
 from gapless.scenarios import Outage, withhold
 from gapless.sensors import grade_names
@@ -71,7 +73,7 @@ def graded(system: System, recording: Recording) -> System:
             f"{recording.name}: no sensor grade {recording.grade!r}; "
             f"state one of {', '.join(grade_names())}, or none"
         )
-    return replace(system, imu=replace(system.imu, grade=recording.grade))
+    return structs.replace(system, imu=structs.replace(system.imu, grade=recording.grade))
 
 
 def withhold_from(recording: Recording, outages: Iterable[Outage]) -> Recording:
