@@ -111,7 +111,7 @@ def strangers(told: Turns) -> bool:
     bool
         False where there are too few turns, as on a motorway.
     """
-    enough = told.both >= _TOLD and bool((told.explained > 0.0).all())
+    enough = told.both >= _TOLD and bool((told.explained > 0.0).mean() > 0.5)
     return enough and float(told.explained.max()) < _STRANGE
 
 
@@ -126,7 +126,11 @@ def puzzling(told: Turns) -> bool:
     -------
     bool
     """
-    return told.both >= 0.5 * _TOLD and bool((told.explained > 0.0).all()) and told.explained.max() < _CLEAR
+    return (
+        told.both >= 0.5 * _TOLD
+        and bool((told.explained > 0.0).mean() > 0.5)
+        and told.explained.max() < _CLEAR
+    )
 
 
 def hint(imu: Imu, gnss: Gnss) -> float:

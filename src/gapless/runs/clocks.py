@@ -72,23 +72,47 @@ def base_offset(past: Recording, given: Mapping[str, float]) -> float:
     """
     if OTHER.keys() & given.keys():
         return 0.0
-    told = turns(past.imu, past.gnss)
-    base = far_off(told)
-    if puzzling(told) and not base:
-        base = hint(past.imu, past.gnss)
-        if strangers(told) and not base:
-            raise RecordingError(
-                f"{past.name}: the turns of the GNSS course and those of the gyros are not the same at any "
-                "offset within ten minutes; put both on one clock, and check that they are of one drive"
-            )
+    base = far_off(turns(past.imu, past.gnss))
     if abs(base) > MOST:
-        way, cure = ("later", "subtract") if base < 0.0 else ("earlier", "add")
-        leap = " (GPS time is 18 s ahead of UTC)" if abs(abs(base) - 18.0) < 1.0 else ""
-        raise RecordingError(
-            f"{past.name}: GNSS stamps are {abs(base):.1f} s {way} than the IMU's, by the turns that both "
-            f"tell of; put both on one clock: {cure} that much{leap}"
-        )
+        raise _far(past, base)
     return base
+
+
+def refuse_strangers(recording: Recording, given: Mapping[str, float]) -> None:
+    """Refuse logs whose clocks have nothing to do with each other: turns that both tell of are not the same.
+
+    Parameters
+    ----------
+    recording : Recording
+        The whole of it: nothing else is decided by it.
+    given : mapping of str to float
+        Where a user gave an offset, nothing is refused.
+
+    Raises
+    ------
+    RecordingError
+    """
+    if OTHER.keys() & given.keys():
+        return
+    told = turns(recording.imu, recording.gnss)
+    if not puzzling(told) or far_off(told):
+        return
+    if away := hint(recording.imu, recording.gnss):
+        raise _far(recording, away)
+    if strangers(told):
+        raise RecordingError(
+            f"{recording.name}: the turns of the GNSS course and those of the gyros are not the same at any "
+            "offset within ten minutes; put both on one clock, and check that they are of one drive"
+        )
+
+
+def _far(recording: Recording, base: float) -> RecordingError:
+    way, cure = ("later", "subtract") if base < 0.0 else ("earlier", "add")
+    leap = " (GPS time is 18 s ahead of UTC)" if abs(abs(base) - 18.0) < 1.0 else ""
+    return RecordingError(
+        f"{recording.name}: GNSS stamps are {abs(base):.1f} s {way} than the IMU's, by the turns that both "
+        f"tell of; put both on one clock: {cure} that much{leap}"
+    )
 
 
 def believed(channel: str, clocks: Clocks) -> Offset:

@@ -70,7 +70,7 @@ class FirstPass:
 
     def __init__(self, past: Recording, system: System) -> None:
         self.past, self.system = past, system
-        self.given = {c: v for c in CHANNELS if (v := getattr(system.clock, c)) != "auto"}
+        self.given = given(system)
         self.base = base_offset(past, self.given)
         self.offsets = {"position": self.base, "velocity": self.base, "odometer": 0.0} | self.given
         self.found: dict[str, Offset] = {}
@@ -258,3 +258,18 @@ def given_mounting(system: System) -> Mounting:
     m = system.mounting
     angles = np.array([0.0 if a == "auto" else a * DEG for a in (m.pitch, m.yaw)])
     return Mounting(angles, np.array([m.pitch_sd, m.yaw_sd]) * DEG)
+
+
+def given(system: System) -> dict[str, float]:
+    """Clock offsets that a recipe states, by channel.
+
+    Parameters
+    ----------
+    system : System
+
+    Returns
+    -------
+    dict of str to float
+        [s]
+    """
+    return {c: v for c in CHANNELS if (v := getattr(system.clock, c)) != "auto"}

@@ -22,7 +22,7 @@ from gapless.runs.clocks import (
     jitter_decisions,
     together,
 )
-from gapless.runs.decide import decide
+from gapless.runs.decide import decide, decide_before
 from gapless.simulate import Receiver, simulate
 from gapless.systems.recipe import System
 
@@ -170,15 +170,22 @@ def test_stamps_that_are_seconds_off_are_found_as_finely_as_others(drive, second
 
 
 @pytest.mark.parametrize("seconds", [60.0, -100.0])
-def test_clocks_that_have_nothing_to_do_with_each_other_are_refused(drive, seconds):
-    with pytest.raises(RecordingError, match=f"{abs(seconds) // 10:.0f}"):
-        decide(shifted(drive, seconds), System())
+def test_clocks_that_are_minutes_apart_are_refused_and_named(drive, seconds):
+    way = "subtract" if seconds > 0.0 else "add"
+    with pytest.raises(RecordingError, match=rf"are {abs(seconds) // 10:.0f}\d\.\d s|are 59\.\d s") as told:
+        decide_before(shifted(drive, seconds), System(), ())
+    assert way in str(told.value)
 
 
-def test_two_drives_are_refused_as_one(drive):
-    other = simulate("urban", "consumer", 300.0, 9, rate=50.0)
+def test_two_drives_are_not_one():
+    one, other = (simulate("urban", "consumer", 420.0, seed, rate=50.0) for seed in (4, 9))
     with pytest.raises(RecordingError, match="not the same at any offset"):
-        decide(replace(drive, gnss=other.gnss), System())
+        decide_before(replace(one, gnss=other.gnss), System(), ())
+
+
+def test_a_straight_drive_is_not_refused():
+    log = simulate("highway", "consumer", 300.0, 4, rate=50.0)
+    decide_before(shifted(log, 60.0), System(), ())
 
 
 def test_stamps_of_another_time_scale_are_refused(drive):
