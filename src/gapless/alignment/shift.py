@@ -25,6 +25,8 @@ LASTS: Final = 60.0
 SMOOTH: Final = 0.3
 """Positions' wander over their white errors is taken to be no more: what a receiver's own filter makes smooth
 follows its velocities from fix to fix, and their clock."""
+FELT: Final = 3.0
+"""The same of velocities against what was felt."""
 _RATIOS: Final = (0.0, 0.3, 1.0, 3.0, 10.0)
 """Deviations of the wandering part over the white one that are tried."""
 _WALKS: Final = (0.0, 0.01, 0.03, 0.1, 0.3, 1.0)
@@ -182,7 +184,7 @@ def _fit(
     many = sum(len(b.time) for b in blocks)
     middle = sum(float(b.time.sum()) for b in blocks) / many
     spare = [np.ones(len(b.time)) for b in blocks]
-    tried = [(r, w) for r in _RATIOS for w in _WALKS if felt or max(r, 8.0 * w) <= SMOOTH]
+    tried = [(r, w) for r in _RATIOS for w in _WALKS if max(r, 8.0 * w) <= (FELT if felt else SMOOTH)]
     found = [(_solve(blocks, spare, degree, middle, felt, r, w), r, w) for r, w in tried]
     best, ratio, walk = min(found, key=lambda one: one[0].cost)
     for _ in range(2):

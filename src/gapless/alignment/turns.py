@@ -32,6 +32,10 @@ _TOLD: Final = 20.0
 """Seconds of turning on both sides from which turns must agree: half a dozen corners."""
 _STRANGE: Final = 0.3
 """Turns of which no offset explains so much are not of one car at one time: by chance it is a fifth."""
+_CLEAR: Final = 0.5
+"""Turns that are the same are explained to nine tenths, on real cars too; less than this is a puzzle."""
+_SURE: Final = 0.85
+"""An offset far off is named where it explains so much."""
 _FAR: Final = 600.0
 """Where no offset within `REACH` explains turns, offsets up to this are looked at for a hint [s]."""
 _SMALL: Final = 1.0
@@ -56,7 +60,7 @@ class Turns(NamedTuple):
     both: float = 0.0
 
 
-def turns(imu: Imu, gnss: Gnss, reach: float = REACH) -> Turns:
+def turns(imu: Imu, gnss: Gnss, reach: float = REACH, least: float = 0.0) -> Turns:
     """Hold the turns of the course against those of the gyros, about whatever axis explains most.
 
     Parameters
@@ -65,6 +69,8 @@ def turns(imu: Imu, gnss: Gnss, reach: float = REACH) -> Turns:
     gnss : Gnss
     reach : float
         Offsets up to this are looked at [s].
+    least : float
+        Where the course turned for less than this, an offset explains nothing [s].
 
     Returns
     -------
@@ -77,6 +83,7 @@ def turns(imu: Imu, gnss: Gnss, reach: float = REACH) -> Turns:
     turned = drove.turned
     for at in (drove.time + s for s in offsets):
         there = (at - _HALF > angle.time[0]) & (at + _HALF < angle.time[-1])
+        there &= (np.abs(turned[there]) > _TURNING).sum() >= least
         felt = angle.around(at[there], _HALF)
         explained.append(_explained(felt, turned[there]) if there.sum() >= _ENOUGH else 0.0)
     return Turns(offsets, np.array(explained), _turning(turned, angle))
@@ -104,7 +111,26 @@ def strangers(told: Turns) -> bool:
     bool
         False where there are too few turns, as on a motorway.
     """
-    return told.both >= _TOLD and float(told.explained.max()) < _STRANGE
+    enough = told.both >= _TOLD and bool((told.explained > 0.0).mean() > 0.5)
+    return enough and float(told.explained.max()) < _STRANGE
+
+
+def puzzling(told: Turns) -> bool:
+    """Whether there are turns, and no offset explains them as it should.
+
+    Parameters
+    ----------
+    told : Turns
+
+    Returns
+    -------
+    bool
+    """
+    return (
+        told.both >= 0.5 * _TOLD
+        and bool((told.explained > 0.0).mean() > 0.5)
+        and told.explained.max() < _CLEAR
+    )
 
 
 def hint(imu: Imu, gnss: Gnss) -> float:
@@ -120,7 +146,8 @@ def hint(imu: Imu, gnss: Gnss) -> float:
     float
         [s]
     """
-    return far_off(turns(imu, gnss, _FAR))
+    told = turns(imu, gnss, _FAR, 0.5 * _TOLD)
+    return far_off(told) if told.explained.max() > _SURE else 0.0
 
 
 def far_off(told: Turns) -> float:

@@ -10,7 +10,7 @@ import numpy as np
 
 from gapless.alignment.clock import Offset
 from gapless.alignment.shift import Shift
-from gapless.alignment.turns import far_off, hint, strangers, turns
+from gapless.alignment.turns import far_off, hint, puzzling, strangers, turns
 from gapless.alignment.uneven import Jitter
 from gapless.errors import RecordingError
 from gapless.trip.recording import Recording
@@ -72,23 +72,47 @@ def base_offset(past: Recording, given: Mapping[str, float]) -> float:
     """
     if OTHER.keys() & given.keys():
         return 0.0
-    told = turns(past.imu, past.gnss)
-    base = far_off(told)
-    if strangers(told) and not base:
-        base = hint(past.imu, past.gnss)
-        if not base:
-            raise RecordingError(
-                f"{past.name}: the turns of the GNSS course and those of the gyros are not the same at any "
-                "offset within ten minutes; put both on one clock, and check that they are of one drive"
-            )
+    base = far_off(turns(past.imu, past.gnss))
     if abs(base) > MOST:
-        way, cure = ("later", "subtract") if base < 0.0 else ("earlier", "add")
-        leap = " (GPS time is 18 s ahead of UTC)" if abs(abs(base) - 18.0) < 1.0 else ""
-        raise RecordingError(
-            f"{past.name}: GNSS stamps are {abs(base):.1f} s {way} than the IMU's, by the turns that both "
-            f"tell of; put both on one clock: {cure} that much{leap}"
-        )
+        raise _far(past, base)
     return base
+
+
+def refuse_strangers(recording: Recording, given: Mapping[str, float]) -> None:
+    """Refuse logs whose clocks have nothing to do with each other: turns that both tell of are not the same.
+
+    Parameters
+    ----------
+    recording : Recording
+        The whole of it: nothing else is decided by it.
+    given : mapping of str to float
+        Where a user gave an offset, nothing is refused.
+
+    Raises
+    ------
+    RecordingError
+    """
+    if OTHER.keys() & given.keys():
+        return
+    told = turns(recording.imu, recording.gnss)
+    if not puzzling(told) or far_off(told):
+        return
+    if away := hint(recording.imu, recording.gnss):
+        raise _far(recording, away)
+    if strangers(told):
+        raise RecordingError(
+            f"{recording.name}: the turns of the GNSS course and those of the gyros are not the same at any "
+            "offset within ten minutes; put both on one clock, and check that they are of one drive"
+        )
+
+
+def _far(recording: Recording, base: float) -> RecordingError:
+    way, cure = ("later", "subtract") if base < 0.0 else ("earlier", "add")
+    leap = " (GPS time is 18 s ahead of UTC)" if abs(abs(base) - 18.0) < 1.0 else ""
+    return RecordingError(
+        f"{recording.name}: GNSS stamps are {abs(base):.1f} s {way} than the IMU's, by the turns that both "
+        f"tell of; put both on one clock: {cure} that much{leap}"
+    )
 
 
 def believed(channel: str, clocks: Clocks) -> Offset:
@@ -214,29 +238,28 @@ def clock_decision(channel: str, clocks: Clocks, span: float) -> Decision:
     return Decision(name, value, "s", "data", evidence, sd)
 
 
-def parting(shifts: tuple[Shift, ...]) -> tuple[float, float, float]:
-    """Drift of a receiver's clock, from all that it stamps.
+def parting(shifts: Mapping[str, Shift]) -> tuple[float, float, float]:
+    """Drift of a receiver's clock: that of its velocities, for positions are held against these.
 
     Parameters
     ----------
-    shifts : tuple of Shift
-        At least one.
+    shifts : mapping of str to Shift
+        By channel.
 
     Returns
     -------
     drift, sd : float
-        Seconds in a second. Deviations of least squares are doubled: simulated drives have them at up to
-        twice as much.
+        Seconds in a second; zero where positions part from velocities, for that is no clock. Deviations of
+        least squares are doubled: simulated drives have them at up to twice as much.
     since : float
         The time for which offsets were found [s].
     """
-    clear = [s.drift / (2.0 * s.drift_sd) for s in shifts]
-    weights = np.array([s.drift_sd**-2.0 for s in shifts])
-    drift, sd = float(weights @ [s.drift for s in shifts] / weights.sum()), 2.0 / math.sqrt(weights.sum())
-    agree = min(clear) * max(clear) > 0.0
-    least = min(abs(c) for c in clear)
-    since = min(shifts, key=lambda s: s.sd).middle
-    return (math.copysign(min(abs(drift), least * sd), drift) if agree else 0.0), sd, since
+    one = shifts.get("velocity", shifts.get("position"))
+    if one is None:
+        return 0.0, math.inf, 0.0
+    other = shifts["position"] if "position" in shifts and "velocity" in shifts else None
+    apart = other is not None and abs(other.drift) > max(0.5 * abs(one.drift), 4.0 * other.drift_sd)
+    return (0.0 if apart else one.drift), 2.0 * one.drift_sd, one.middle
 
 
 def drift_decision(drift: float, sd: float, span: float) -> Decision:

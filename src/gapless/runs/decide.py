@@ -10,8 +10,8 @@ import numpy as np
 from gapless.filters.stamp_doubt import SURE, Doubt
 from gapless.fold.feed import DRIFT
 from gapless.runs.arms import Arm, settle
-from gapless.runs.clocks import clock_notes, doubt
-from gapless.runs.first_pass import FirstPass, Mounting
+from gapless.runs.clocks import clock_notes, doubt, refuse_strangers
+from gapless.runs.first_pass import FirstPass, Mounting, given
 from gapless.runs.prepare import graded
 from gapless.scenarios import Outage
 from gapless.systems.build import budget
@@ -132,6 +132,7 @@ def decide_before(open_sky: Recording, system: System, outages: tuple[Outage, ..
     Decided
     """
     system = graded(system, open_sky)
+    refuse_strangers(open_sky, given(system))
     horizons = [open_sky.start + start for start in sorted(o.start for o in outages)] or [np.inf]
     for horizon in horizons:
         decided = decide(open_sky, system, horizon)

@@ -72,7 +72,7 @@ class FirstPass:
 
     def __init__(self, past: Recording, system: System) -> None:
         self.past, self.system = past, system
-        self.given = {c: v for c in CHANNELS if (v := getattr(system.clock, c)) != "auto"}
+        self.given = given(system)
         self.base = base_offset(past, self.given)
         self.offsets = {"position": self.base, "velocity": self.base, "odometer": 0.0} | self.given
         self.found: dict[str, Offset] = {}
@@ -99,7 +99,7 @@ class FirstPass:
         """Whether the clocks were just found to part."""
         if self.given or not self.shifts:
             return False
-        drift, self.drift_sd, since = parting(tuple(self.shifts.values()))
+        drift, self.drift_sd, since = parting(self.shifts)
         least = PARTING if DRIFT not in self.offsets else 1.0
         if abs(drift) < least * self.drift_sd or abs(drift) * self.span < SETTLED:
             return False
@@ -271,3 +271,18 @@ def _before_knocks(journal: Journal) -> int:
     """The last row at which the box sat as it did at first."""
     knocks = [time for time, angle in journal.knocks if abs(angle) > KNOCK]
     return int(np.searchsorted(journal.times, knocks[0])) - 1 if knocks else -1
+
+
+def given(system: System) -> dict[str, float]:
+    """Clock offsets that a recipe states, by channel.
+
+    Parameters
+    ----------
+    system : System
+
+    Returns
+    -------
+    dict of str to float
+        [s]
+    """
+    return {c: v for c in CHANNELS if (v := getattr(system.clock, c)) != "auto"}

@@ -151,7 +151,8 @@ def stamps(system: System, offsets: Mapping[str, float]) -> dict[str, float]:
 
 def _lateness(offsets: Mapping[str, float], recording: Recording) -> float:
     """How late readings arrive, with some slack; 0 where none does."""
-    more = offsets.get("drift", 0.0) * (recording.gnss.time[[0, -1]] - offsets.get("since", 0.0))
+    ends = recording.gnss.time[[0, -1]] if len(recording.gnss) else np.zeros(2)
+    more = offsets.get("drift", 0.0) * (ends - offsets.get("since", 0.0))
     most = max(
         0.0,
         *(-late for name, late in offsets.items() if name == "odometer"),

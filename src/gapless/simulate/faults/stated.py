@@ -62,8 +62,10 @@ def _arm(told: Array) -> Plant:
     def plant(log: Recording, span: Span, size: float, chance: Generator) -> Pair:
         aside = chance.uniform(-0.5, 0.5)
         arm = size * np.array([chance.choice([-1.0, 1.0]), aside, -0.3])
-        right = replace(log, gnss=_at_arm(log, arm), lever_arm=log.lever_arm + arm)
-        return Pair(replace(right, lever_arm=log.lever_arm + told * arm), right)
+        had = np.zeros(3) if log.lever_arm is None else log.lever_arm
+        right = replace(log, gnss=_at_arm(log, arm), lever_arm=had + arm)
+        wrong = None if not told.any() and not had.any() else had + told * arm
+        return Pair(replace(right, lever_arm=wrong), right)
 
     return plant
 
