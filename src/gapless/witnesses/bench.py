@@ -103,7 +103,7 @@ class Bench:
         raw = self._metres(reading) if channel == "position" else reading.value[part]
         var = o.R.diagonal()[part]
         self._tell(channel, reading.time, raw, float(np.sqrt(var[:2].max())))
-        said = Said(reading.time, reading.value, raw, value, var, fits, self._rests(reading, belief))
+        said = Said(reading.time, reading.value, raw, value, var, fits, nis, self._rests(reading, belief))
         ruling = mine.hear(said, self._slack(channel, belief), *self._against(channel, reading.time))
         if channel == "velocity":
             ruling = self._turned(said, ruling)
