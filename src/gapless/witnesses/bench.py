@@ -254,6 +254,7 @@ class Bench:
         """The filter began anew: nothing that was compared with it counts."""
         self.channels, self.fitted, self.at_odds, self.offset = {}, {}, {}, np.zeros(3)
         self.askew.forget()
+        self.jolts.forget()
 
     def copy(self) -> Self:
         """An independent copy (arrays of its own are never changed in place)."""

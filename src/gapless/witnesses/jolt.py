@@ -123,16 +123,19 @@ class Jolts:
         if angle < STEADY:
             self.steady += 1
             self.length += max(SLOWLY, 1.0 / self.steady) * (length - self.length)
-        if (
-            angle < ANGLE + 3.0 * tilt or growing or self.steady < KNOWN
-        ):  # all of the window must have come after it
+        leans = angle >= ANGLE + 3.0 * tilt  # not so where one of them is no number
+        if not leans or growing or self.steady < KNOWN:  # all of the window must have come after it
             return None
         if length - self.length > LONGER * self.length * (1.0 / max(float(np.cos(angle)), 0.2) - 1.0):
             return None
-        self.ring, self.peak = self.ring[:0], 0.0
+        self.forget()
         felt = c_nb.T @ mean
         turn = between(felt, -c_nb[2])
         return Jolt(turn, WINDOW * tick, felt - turn @ felt, angle)
+
+    def forget(self) -> None:
+        """The attitude changed: forces of before lean by another one."""
+        self.ring, self.peak = self.ring[:0], 0.0
 
     def copy(self) -> Self:
         """An independent copy."""
