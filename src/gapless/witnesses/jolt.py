@@ -119,11 +119,13 @@ class Jolts:
         if len(self.ring) < WINDOW:
             return None
         angle, length, mean = lean(self.ring)
+        if not np.isfinite(length + tilt):
+            return None
         growing, self.peak = angle > self.peak, angle
         if angle < STEADY:
             self.steady += 1
             self.length += max(SLOWLY, 1.0 / self.steady) * (length - self.length)
-        leans = angle >= ANGLE + 3.0 * tilt  # not so where one of them is no number
+        leans = angle >= ANGLE + 3.0 * tilt
         if not leans or growing or self.steady < KNOWN:  # all of the window must have come after it
             return None
         if length - self.length > LONGER * self.length * (1.0 / max(float(np.cos(angle)), 0.2) - 1.0):
