@@ -48,10 +48,11 @@ def test_what_moves_as_was_felt_is_no_contradiction(motion, seed):
         said = v + SD * noise
         assert past.excess(float(k), said - felt, said, SD**2, SLACK) < 1.0
         past.keep(float(k), said - felt, said, SD**2)
-        v = v + [north, east]
+        gained = np.array([north, east])
+        v = v + gained
         bearing = rng.uniform(0.0, 2.0 * np.pi)
         wrong = 0.999 * SLACK.rate * np.array([np.cos(bearing), np.sin(bearing)])
-        felt = felt + [north, east] + wrong
+        felt = felt + gained + wrong
 
 
 @given(st.floats(1.05, 100.0), st.floats(0.0, 2.0 * np.pi), st.floats(0.0, 1.0), st.floats(0.5, REACH))

@@ -136,7 +136,7 @@ def test_a_copy_goes_on_alone():
 
 @given(st.lists(st.floats(-1.0, 1.0), min_size=6, max_size=6))
 def test_between_is_the_rotation_from_one_to_the_other(parts):
-    a, b = np.array(parts[:3]) + [0.0, 0.0, 1.5], np.array(parts[3:]) - [0.0, 1.5, 0.0]
+    a, b = np.array(parts).reshape(2, 3) + np.array([[0.0, 0.0, 1.5], [0.0, -1.5, 0.0]])
     turn = between(a, b)
     assert np.allclose(turn @ turn.T, np.eye(3), atol=1e-9)
     assert np.linalg.det(turn) == pytest.approx(1.0)
