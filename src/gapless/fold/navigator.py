@@ -396,7 +396,7 @@ class Navigator:
         c = state.belief.C_nb
         turning = np.cross(motion.rate, c.T @ state.belief.v_n)  # a corner leans on the box, no blow does
         jolt = state.bench.jolts.feel(motion.force - turning, c, tilt, dt)
-        if jolt is not None:
+        if jolt is not None and not state.lost:  # else it is the attitude that leans
             self._knocked(jolt)
         for name, constraint in state.constraints.items():
             if state.guessed and constraint.needs_samples:

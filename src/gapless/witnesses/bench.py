@@ -238,7 +238,11 @@ class Bench:
             speed = self.channels.get("velocity")
             lied = speed is not None and time - speed.silent > ACCUSED and not speed.following(time)
             stands = time - self.rested[1] < APART  # what drifts while the car stands is the receiver
-            return stands or self._believed("velocity", time), False, lied and time - self.story.since > ACCUSED
+            return (
+                stands or self._believed("velocity", time),
+                False,
+                lied and time - self.story.since > ACCUSED,
+            )
         place = self.channels.get("position")
         if channel == "velocity" and place is not None and not place.following(time):
             return True, True, False  # one receiver: it does not know its speed while its place stands about
