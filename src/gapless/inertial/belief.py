@@ -245,8 +245,8 @@ class Belief:
     def remount(self, slip: Array) -> float:
         """Doubt how the box sits in the car, for the car seems to slip.
 
-        Or a gyro's zero has leapt, and the heading with it: then the slip grows, and a mounting that alone was
-        in doubt would follow it.
+        Or a gyro's zero has leapt, and the heading with it: then the slip grows, and a mounting that alone
+        was in doubt would follow it.
 
         Parameters
         ----------
