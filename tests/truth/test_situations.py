@@ -16,7 +16,7 @@ with pytest.MonkeyPatch.context() as path:
     situations = importlib.import_module("situations")
 
 NOT_YET: dict[str, str] = {
-    "receiver repeats itself, within 5 mm": "its velocity is heard for 7 s more, and bends the heading a little",
+    "receiver repeats itself, within 5 mm": "its velocity is heard for 7 s more, and bends the heading",
     "aside after a tunnel, glides back": "the first fix after a silence is believed, however far aside",
 }
 """Situations that do not hold yet, and what is missing."""
