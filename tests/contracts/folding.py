@@ -12,6 +12,7 @@ from gapless.fold.feed import events
 from gapless.fold.navigator import Navigator, Settings
 from gapless.scenarios import Outage, withhold
 from gapless.simulate import Receiver, Vehicle, WheelSensor, simulate
+from gapless.simulate.faults import FAULTS
 from gapless.systems.build import settings
 from gapless.systems.recipe import System
 from gapless.trip.events import Event, ImuBlock
@@ -30,6 +31,25 @@ OUTAGE, SILENCE = (72.0, 92.0), (127.0, 144.0)
 """Without GNSS; without IMU as well [s after the start]."""
 HOLES = ((66.4, 66.7), (84.0, 85.5), (110.0, 112.0))
 """Without IMU for so short that it is bridged: between fixes, in the outage, over fixes [s]."""
+FAULTY = {
+    "receiver": (
+        ("odometer-stands-a-while", 1.0, 48.0, 54.0),
+        ("repeats", 1.0, 57.0, 66.0),
+        ("moves", 25.0, 72.0, np.inf),
+        ("repeats-nearly", 0.005, 136.0, 146.0),
+    ),
+    "imu": (
+        ("box-knocked-over", 70.0, 60.0, np.inf),
+        ("jumps", 25.0, 90.0, 98.0),
+        ("gyro-leaps", 2.5, 100.0, np.inf),
+        ("box-turned", 35.0, 133.0, np.inf),
+    ),
+}
+"""Kind, size in its unit, from and until [s]; each kind of ruling is in one of them."""
+SUDDEN = 2
+"""A seed with which boxes move too fast for their gyros to tell."""
+FAULTY_HOLES = ((61.5, 62.3), (84.0, 85.5), (110.0, 111.0), (125.0, 128.0))
+"""Just after the box fell, among lies, at rest, and one that is too long to be bridged."""
 MOUNTING = (np.array([0.03, -0.05]), np.array([0.02, 0.02]))
 
 
@@ -45,6 +65,22 @@ def recording(clock: str, rate: float, seed: int = 6, duration: float = 165.0) -
         logged &= (log.imu.time < begin) | (log.imu.time >= end)
     gnss = withhold(log.gnss, [Outage(*OUTAGE)], 0.0)
     return replace(log, imu=log.imu.take(logged), gnss=gnss)
+
+
+@cache
+def faulty(faults: str, clock: str, rate: float) -> Recording:
+    """The same drive with faults of `FAULTY` in it, and holes about them."""
+    late = CLOCKS[clock]
+    receiver = Receiver(rate=rate, position_delay=-late["position"], velocity_delay=-late["velocity"])
+    wheels = WheelSensor(rate=5.0, delay=-late.get("odometer", 0.0), scale=0.01)
+    log = simulate("urban", "consumer", 165.0, 6, vehicle=CAR, receiver=receiver, wheels=wheels)
+    for kind, size, begin, end in FAULTY[faults]:
+        fault = FAULTS[kind]
+        log = fault.plant(log, (begin, end), size * fault.scale, np.random.default_rng(SUDDEN)).faulted
+    logged = np.ones(len(log.imu), bool)
+    for begin, end in FAULTY_HOLES:
+        logged &= (log.imu.time < begin) | (log.imu.time >= end)
+    return replace(log, imu=log.imu.take(logged))
 
 
 def prepared(log: Recording, clock: str, system: System | None = None) -> Settings:
@@ -75,6 +111,12 @@ def rows(navigator: Navigator, start: float = -np.inf, end: float = np.inf) -> l
     return [
         (t, x.tobytes(), p.tobytes(), common.tobytes(), s) for t, x, p, common, s in found if start <= t < end
     ]
+
+
+def noticed(navigator: Navigator, end: float = np.inf) -> tuple[list[object], ...]:
+    """Rulings, knocks and alignments before a time."""
+    j = navigator.journal
+    return tuple([x for x in found if x[0] < end] for found in (j.rulings, j.knocks, j.alignments))
 
 
 def heard(navigator: Navigator, skip: dict[str, int] | None = None) -> dict[str, list[tuple[object, ...]]]:

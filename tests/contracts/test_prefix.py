@@ -4,7 +4,19 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from folding import HOLES, OUTAGE, SILENCE, heard, prepared, recording, rows, run
+from folding import (
+    FAULTY,
+    HOLES,
+    OUTAGE,
+    SILENCE,
+    faulty,
+    heard,
+    noticed,
+    prepared,
+    recording,
+    rows,
+    run,
+)
 
 from gapless.runs.fuse import fuse
 from gapless.scenarios import Outage
@@ -32,6 +44,39 @@ def test_a_prefix_navigates_like_the_whole(clock, rate):
         assert rows(part) == rows(whole, end=part.time + 1e-9), t
         for name, said in heard(part).items():
             assert said == told[name][: len(said)], (t, name)
+
+
+LIES = (60.05, 62.0, 84.7, 102.3, 108.3, 126.0, 133.5, 154.5)
+"""While witnesses doubt, as they rule, as a box falls, and between."""
+
+
+@pytest.mark.parametrize(("faults", "clock"), [("receiver", "late"), ("imu", "early")])
+def test_a_prefix_with_faults_navigates_like_the_whole(faults, clock):
+    log = faulty(faults, clock, 1.0)
+    setup = prepared(log, clock)
+    whole = run(setup, log, clock)
+    told, notices = heard(whole), noticed(whole)
+    assert len(rows(whole)) > 900
+    for t in LIES:
+        part = run(setup, log.slice(-np.inf, t), clock)
+        assert rows(part) == rows(whole, end=part.time + 1e-9), t
+        for found, of in zip(noticed(part), notices, strict=True):
+            assert found == of[: len(found)], t
+        for name, said in heard(part).items():
+            assert said == told[name][: len(said)], (t, name)
+
+
+def test_the_faults_are_noticed():
+    """(So the tests above go through what they are about.)"""
+    ruled, knocks = {}, []
+    for faults in FAULTY:
+        log = faulty(faults, "early", 1.0)
+        found = noticed(run(prepared(log, "early"), log, "early"))
+        ruled |= {(channel, ruling): None for _, channel, ruling in found[0]}
+        knocks += found[1]
+    assert {(c, "silence") for c in ("position", "velocity", "odometer")} <= set(ruled)
+    assert {"believe", "turn"} <= {ruling for _, ruling in ruled}
+    assert any(abs(time - 60.0) < 1.5 for time, _ in knocks)
 
 
 @pytest.mark.parametrize("clock", ["late", "early"])

@@ -5,7 +5,22 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from folding import CLOCKS, HOLES, OUTAGE, belief, fold, heard, prepared, recording, rows, run, singles
+from folding import (
+    CLOCKS,
+    FAULTY,
+    HOLES,
+    OUTAGE,
+    belief,
+    faulty,
+    fold,
+    heard,
+    noticed,
+    prepared,
+    recording,
+    rows,
+    run,
+    singles,
+)
 
 from gapless.fold.feed import events
 from gapless.fold.navigator import Navigator
@@ -51,6 +66,40 @@ def test_resume(clock, correction):
         assert belief(fresh) == belief(whole)
         assert rows(fresh) == rows(whole)[len(before) :]
         assert {**{name: [] for name in skip}, **heard(fresh)} == heard(whole, skip)
+
+
+@pytest.mark.parametrize(
+    ("faults", "clock", "correction"),
+    [("receiver", "early", "feedback"), ("imu", "early", "feedback"), ("imu", "late", "feedforward")],
+)
+def test_resume_fork_and_blocks_with_faults(faults, clock, correction):
+    """Cut while a channel is silenced, as a box falls and after it, while positions await belief."""
+    log = faulty(faults, clock, 1.0)
+    setup = prepared(log, clock, System(filter=Filter(correction=correction)))
+    feed = list(events(log, CLOCKS[clock]))
+    whole = run(setup, log, clock)
+    live = fold(Navigator(setup), singles(feed))
+    assert rows(live) == rows(whole)
+    assert heard(live) == heard(whole)
+    assert noticed(live) == noticed(whole)
+    assert belief(live) == belief(whole)
+    for k in stops(feed, (60.2, 90.0, 108.5, 135.0))[::2]:
+        navigator = fold(Navigator(setup), feed[:k])
+        now, kept, before = belief(navigator), navigator.snapshot(), rows(navigator)
+        known = noticed(navigator)
+        fork = fold(navigator.fork(), feed[k:])
+        assert belief(navigator) == now
+        fold(navigator, feed[k:])
+        fresh = Navigator(setup)
+        fresh.restore(kept)  # of a belief that has gone on since
+        fold(fresh, feed[k:])
+        for other in (fork, fresh):
+            assert belief(other) == belief(whole)
+            assert rows(other) == rows(whole)[len(before) :]
+            for old, new, all_ in zip(known, noticed(other), noticed(whole), strict=True):
+                assert [*old, *new] == all_
+        assert noticed(navigator) == noticed(whole)
+        assert rows(navigator) == rows(whole)
 
 
 @pytest.mark.parametrize("clock", CLOCKS)
@@ -129,6 +178,23 @@ def test_late_readings_end_in_the_same_belief(share):
     holds = np.array([r.time for r in readings])
     late = holds + share * 0.7 * np.random.default_rng(3).random(len(holds))
     for until in (60.0, OUTAGE[1] - 1.0, 125.0):
+        arrived = holds < until - 0.75
+        ends = [
+            belief(delivered(setup, log, readings, np.where(arrived, times, np.inf), until))
+            for times in (holds, late)
+        ]
+        assert ends[0] == ends[1]
+
+
+@pytest.mark.parametrize("faults", FAULTY)
+def test_late_readings_with_faults_end_in_the_same_belief(faults):
+    """A ruling that a late reading overturns leaves nothing behind."""
+    log = faulty(faults, "exact", 1.0)
+    setup = replace(prepared(log, "exact"), lateness=0.75)
+    readings = [r for e in events(log, CLOCKS["early"]) if not isinstance(e, ImuBlock) for r in e]
+    holds = np.array([r.time for r in readings])
+    late = holds + 0.7 * np.random.default_rng(3).random(len(holds))
+    for until in (64.0, 140.0):
         arrived = holds < until - 0.75
         ends = [
             belief(delivered(setup, log, readings, np.where(arrived, times, np.inf), until))

@@ -40,7 +40,7 @@ class Bridge(Protocol):
     reach: ClassVar[float]
 
     def feel(self, block: ImuBlock) -> None:
-        """Take in the samples that are propagated next.
+        """Take in the samples that were just propagated.
 
         Parameters
         ----------

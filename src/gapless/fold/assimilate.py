@@ -169,6 +169,7 @@ def _lose(state: State, settings: Settings) -> None:
     """Wait for a start, which begins anew."""
     if not state.lost:
         state.aligner, state.astray, state.lost = settings.aligner.copy(), (), True
+        state.box = None
 
 
 def _denied(state: State, time: float, z: Array) -> bool:

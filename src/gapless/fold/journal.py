@@ -60,7 +60,9 @@ class Journal:
         self.latest: dict[str, float] = {}
         self.alignments: list[tuple[float, str]] = []
         self.rulings: list[tuple[float, str, str]] = []
+        self.ruled: dict[str, tuple[float, str]] = {}
         self.knocks: list[tuple[float, float]] = []
+        self.knocked = -math.inf
 
     def row(self, time: float, belief: Belief, shared: Array, source: str) -> None:
         """Write the belief down.
@@ -118,9 +120,10 @@ class Journal:
         ruling : str
             "use", "silence" or "believe".
         """
-        before = next((r for t, c, r in reversed(self.rulings) if c == channel and t < time), "use")
-        if ruling != before and not any(c == channel and t >= time for t, c, _ in self.rulings[-8:]):
+        when, before = self.ruled.get(channel, (-math.inf, "use"))
+        if time > when and ruling != before:
             self.rulings.append((time, channel, ruling))
+            self.ruled[channel] = time, ruling
 
     def knock(self, time: float, angle: float) -> None:
         """Write down that the box was turned.
@@ -132,8 +135,9 @@ class Journal:
         angle : float
             By how much its gravity turned [rad].
         """
-        if not self.knocks or time > self.knocks[-1][0] + 1.0:
+        if time > self.knocked + 1.0:
             self.knocks.append((time, angle))
+            self.knocked = time
 
     def align(self, time: float, evidence: str) -> None:
         """Write an alignment down.
@@ -161,7 +165,9 @@ class Journal:
             dict(self.latest),
             len(self.alignments),
             len(self.rulings),
+            dict(self.ruled),
             len(self.knocks),
+            self.knocked,
         )
 
     def rewind(self, mark: Any) -> None:
@@ -172,8 +178,8 @@ class Journal:
         mark : object
             From `mark`.
         """
-        self.last, n, counts, latest, aligned, ruled, knocked = mark
-        self.latest = dict(latest)
+        self.last, n, counts, latest, aligned, ruled, last, knocked, self.knocked = mark
+        self.latest, self.ruled = dict(latest), dict(last)
         for rows in (self.times, self.states, self.variances, self.shared, self.sources):
             del rows[n:]
         for name, channel in self.channels.items():
@@ -190,6 +196,7 @@ class Journal:
         other : Journal
         """
         self.last, self.latest = other.last, dict(other.latest)
+        self.ruled, self.knocked = dict(other.ruled), other.knocked
 
     def trajectory(self) -> Trajectory:
         """All rows as a trajectory.

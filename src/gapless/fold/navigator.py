@@ -296,39 +296,44 @@ class Navigator:
 
     def _go(self, stretch: ImuBlock, doubt: Array | None = None) -> None:
         """Run through samples without a hole; `doubt` of those that are guessed."""
-        for piece in pieces(stretch, self._state.pending, self._state.belief.memory):
+        for piece in pieces(stretch, self._state.pending, self._before):
             if piece.last > piece.first:
                 self._run(*piece, doubt)
             if piece.due:
                 self._apply_due()
+
+    def _before(self) -> Array:
+        """What the last sample left behind, as the sensors felt it."""
+        memory, box = self._state.belief.memory, self._state.box
+        if box is None:
+            return memory
+        felt = memory.copy()
+        for k in (at.PREV_THETA, at.PREV_VEL):
+            felt[k : k + 3] = box.T @ memory[k : k + 3]
+        return felt
 
     def _run(self, block: ImuBlock, first: int, last: int, due: bool, doubt: Array | None) -> None:
         """Propagate samples first..last-1, ticking on the way; `due`: an observation waits there."""
         s, state = self.settings, self._state
         raw, box = block, state.box
         block = in_box(raw, box)
-        if state.aligner is not None:
-            rows = np.column_stack([block.time, block.dt, block.dtheta, block.dvel])[first:last]
-            state.aligner.feel(float(block.time[last - 1]), rows)
         if not state.aligned:
+            self._told(block.rows(first, last), doubt)
             state.clock = float(block.time[last - 1])
             return
-        if state.bridges and last > first and doubt is None:
-            felt = block.rows(first, last)
-            for bridge in state.bridges:
-                bridge.feel(felt)
         b, often = state.belief, s.row < s.tick
         if state.fade > 1.0:  # the epoch is over
             b.fade(state.fade, s.ceiling)
             state.fade = 1.0
         while first < last:
             end = self._next_row(block, first, last) if often else last
-            flush = due and end == last
+            flush, begin = due and end == last, first
             first = self._propagate(
                 b.x, b.memory, s.layout.width, b.p, b.scratch, b.error, s.layout.offsets, state.noise,
                 block.time, block.dt, block.dtheta, block.dvel, first, end, s.period, s.tick, flush,
             )  # fmt: skip
             before, state.clock = state.clock, float(block.time[first - 1])
+            self._told(block.rows(begin, first), doubt)
             if doubt is not None:
                 stray(b, doubt, state.clock - before)
             if self.tape is not None and b.memory[at.COV_DT] == 0.0:
@@ -344,6 +349,16 @@ class Navigator:
                 state.guessed = doubt is not None
             elif often:
                 self._row()
+
+    def _told(self, felt: ImuBlock, doubt: Array | None) -> None:
+        """Samples for who listens to them: no more than were propagated, for a tick may turn the box."""
+        state = self._state
+        if state.aligner is not None:
+            rows = np.column_stack([felt.time, felt.dt, felt.dtheta, felt.dvel])
+            state.aligner.feel(float(felt.time[-1]), rows)
+        if state.aligned and doubt is None:
+            for bridge in state.bridges:
+                bridge.feel(felt)
 
     def _next_row(self, block: ImuBlock, first: int, last: int) -> int:
         """Sample after which a row is due, where rows come more often than ticks."""
@@ -381,7 +396,7 @@ class Navigator:
         c = state.belief.C_nb
         turning = np.cross(motion.rate, c.T @ state.belief.v_n)  # a corner leans on the box, no blow does
         jolt = state.bench.jolts.feel(motion.force - turning, c, tilt, dt)
-        if jolt is not None:
+        if jolt is not None and not state.lost:  # else it is the attitude that leans
             self._knocked(jolt)
         for name, constraint in state.constraints.items():
             if state.guessed and constraint.needs_samples:

@@ -245,6 +245,9 @@ class Belief:
     def remount(self, slip: Array) -> float:
         """Doubt how the box sits in the car, for the car seems to slip.
 
+        Or a gyro's zero has leapt, and the heading with it: then the slip grows, and a mounting that alone
+        was in doubt would follow it.
+
         Parameters
         ----------
         slip : ndarray, shape (2,)
@@ -261,6 +264,8 @@ class Belief:
         p, first = self.p.reshape(ROW, ROW), self.layout.blocks["mounting"].start
         p[first, first] += turn[1] ** 2
         p[first + 1, first + 1] += turn[0] ** 2
+        p[8, 8] += turn[0] ** 2
+        p[(9, 10, 11), (9, 10, 11)] += np.square(self.C_nb[2] * turn[0] / SECONDS)
         return float(np.hypot(*turn))
 
     def knocked(self, turn: Array, since: float, gained: Array, ceiling: Array) -> None:

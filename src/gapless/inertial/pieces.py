@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -75,7 +75,7 @@ def _silence(block: ImuBlock) -> NDArray[np.bool_]:
     return np.asarray(block.time[1:] - block.dt[1:] - block.time[:-1] > 0.5 * block.dt[1:])
 
 
-def pieces(block: ImuBlock, pending: Sequence[Reading], memory: Array) -> Iterator[Piece]:
+def pieces(block: ImuBlock, pending: Sequence[Reading], memory: Callable[[], Array]) -> Iterator[Piece]:
     """A block in pieces that end where readings are due.
 
     Parameters
@@ -85,8 +85,8 @@ def pieces(block: ImuBlock, pending: Sequence[Reading], memory: Array) -> Iterat
     pending : sequence of Reading
         In the order of their times; looked at anew after each piece, for whoever takes the pieces
         takes the readings too.
-    memory : ndarray
-        What the sample before a cut left behind, as `propagate` keeps it.
+    memory : callable
+        What the sample before a cut left behind, as `propagate` keeps it and the sensors felt it.
 
     Yields
     ------
@@ -107,7 +107,7 @@ def pieces(block: ImuBlock, pending: Sequence[Reading], memory: Array) -> Iterat
         if part <= EPS:  # it holds for the instant before the sample began
             yield Piece(block, start, start, True)
             continue
-        head, tail = _cut(block.rows(start, start + 1), due, part, memory)
+        head, tail = _cut(block.rows(start, start + 1), due, part, memory())
         yield Piece(head, 0, 1, True)
         yield from pieces(tail, pending, memory)
         start += 1

@@ -237,7 +237,12 @@ class Bench:
         if channel == "position":
             speed = self.channels.get("velocity")
             lied = speed is not None and time - speed.silent > ACCUSED and not speed.following(time)
-            return False, False, lied and time - self.story.since > ACCUSED
+            stands = time - self.rested[1] < APART  # what drifts while the car stands is the receiver
+            return (
+                stands or self._believed("velocity", time),
+                False,
+                lied and time - self.story.since > ACCUSED,
+            )
         place = self.channels.get("position")
         if channel == "velocity" and place is not None and not place.following(time):
             return True, True, False  # one receiver: it does not know its speed while its place stands about
@@ -254,6 +259,7 @@ class Bench:
         """The filter began anew: nothing that was compared with it counts."""
         self.channels, self.fitted, self.at_odds, self.offset = {}, {}, {}, np.zeros(3)
         self.askew.forget()
+        self.jolts.forget()
 
     def copy(self) -> Self:
         """An independent copy (arrays of its own are never changed in place)."""

@@ -119,20 +119,25 @@ class Jolts:
         if len(self.ring) < WINDOW:
             return None
         angle, length, mean = lean(self.ring)
+        if not np.isfinite(length + tilt):
+            return None
         growing, self.peak = angle > self.peak, angle
         if angle < STEADY:
             self.steady += 1
             self.length += max(SLOWLY, 1.0 / self.steady) * (length - self.length)
-        if (
-            angle < ANGLE + 3.0 * tilt or growing or self.steady < KNOWN
-        ):  # all of the window must have come after it
+        leans = angle >= ANGLE + 3.0 * tilt
+        if not leans or growing or self.steady < KNOWN:  # all of the window must have come after it
             return None
         if length - self.length > LONGER * self.length * (1.0 / max(float(np.cos(angle)), 0.2) - 1.0):
             return None
-        self.ring, self.peak = self.ring[:0], 0.0
+        self.forget()
         felt = c_nb.T @ mean
         turn = between(felt, -c_nb[2])
         return Jolt(turn, WINDOW * tick, felt - turn @ felt, angle)
+
+    def forget(self) -> None:
+        """The attitude changed: forces of before lean by another one."""
+        self.ring, self.peak = self.ring[:0], 0.0
 
     def copy(self) -> Self:
         """An independent copy."""

@@ -157,7 +157,7 @@ class Testimony:
             self.follows = said.time
             self.past.forget()
         self.past.keep(said.time, said.value, said.raw, said.var)
-        return self._again(said, contradicted)
+        return "silence" if accused else self._again(said, contradicted)
 
     def _odd(self, said: Said, slack: Slack) -> bool:
         """Whether it did not change as was felt."""
