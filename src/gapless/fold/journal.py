@@ -61,6 +61,7 @@ class Journal:
         self.alignments: list[tuple[float, str]] = []
         self.rulings: list[tuple[float, str, str]] = []
         self.knocks: list[tuple[float, float]] = []
+        self.moves: list[tuple[float, str, float]] = []
 
     def row(self, time: float, belief: Belief, shared: Array, source: str) -> None:
         """Write the belief down.
@@ -116,7 +117,7 @@ class Journal:
         time : float
             [s]
         ruling : str
-            "use", "silence" or "believe".
+            "use", "silence", "believe" or "turn".
         """
         before = next((r for t, c, r in reversed(self.rulings) if c == channel and t < time), "use")
         if ruling != before and not any(c == channel and t >= time for t, c, _ in self.rulings[-8:]):
@@ -134,6 +135,21 @@ class Journal:
         """
         if not self.knocks or time > self.knocks[-1][0] + 1.0:
             self.knocks.append((time, angle))
+
+    def moved(self, time: float, what: str, size: float) -> None:
+        """Write down that something else was found to have moved.
+
+        Parameters
+        ----------
+        time : float
+            [s]
+        what : str
+            "gyro": its zero [rad/s]; "heading": what the filter took for it [rad].
+        size : float
+            By how much.
+        """
+        if not self.moves or time > self.moves[-1][0]:
+            self.moves.append((time, what, size))
 
     def align(self, time: float, evidence: str) -> None:
         """Write an alignment down.
@@ -162,6 +178,7 @@ class Journal:
             len(self.alignments),
             len(self.rulings),
             len(self.knocks),
+            len(self.moves),
         )
 
     def rewind(self, mark: Any) -> None:
@@ -172,7 +189,7 @@ class Journal:
         mark : object
             From `mark`.
         """
-        self.last, n, counts, latest, aligned, ruled, knocked = mark
+        self.last, n, counts, latest, aligned, ruled, knocked, moved = mark
         self.latest = dict(latest)
         for rows in (self.times, self.states, self.variances, self.shared, self.sources):
             del rows[n:]
@@ -181,6 +198,7 @@ class Journal:
         del self.alignments[aligned:]
         del self.rulings[ruled:]
         del self.knocks[knocked:]
+        del self.moves[moved:]
 
     def after(self, other: Journal) -> None:
         """Start empty where another journal stands.

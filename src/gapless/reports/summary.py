@@ -35,6 +35,7 @@ def summarise(solution: Solution, scores: Scores | None = None) -> dict[str, Any
     dict
         For `summary.json`: numbers, strings, lists and dicts; None where a number is not known.
         Metres, seconds, m/s; angles in degrees, their keys end in "_deg"; states name their unit.
+        "verdict" judges the run in a sentence, "" where nothing was noticed; the sizes of "notices" are in SI units.
         "observability", "wheels" and "rehearsals" are in SI units; their times are those of the IMU's clock.
     """
     moved = travelled(solution.trajectory)
@@ -42,6 +43,8 @@ def summarise(solution: Solution, scores: Scores | None = None) -> dict[str, Any
         "gapless": __version__,
         "name": solution.name,
         "system": solution.system,
+        "verdict": solution.verdict,
+        "notices": [plain(one) for one in solution.notices],
         "start": plain(solution.start),
         "rows": len(solution.trajectory),
         "duration": plain(span(solution.trajectory)),
