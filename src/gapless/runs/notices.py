@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from itertools import chain
 from typing import Final, NamedTuple
 
@@ -10,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gapless.fold.journal import KNOCK, Journal
+from gapless.runs.leans import leans
 from gapless.runs.lies import how
 from gapless.trip.recording import Array, Recording, Trajectory
 from gapless.trip.solution import Innovations, Notice
@@ -38,7 +40,7 @@ NAMES: Final = {
     "odometer": "the odometer's readings",
     "nonholonomic": "the constraint to the car's wheels",
 }
-FIRST: Final = ("anew", "turned", "silenced", "believed", "drifted", "heading", "surprised")
+FIRST: Final = ("anew", "turned", "leaned", "silenced", "believed", "drifted", "heading", "surprised")
 """What is told one by one before the rest, where there is too much of it."""
 
 
@@ -80,8 +82,9 @@ def noticed(evidence: Evidence) -> tuple[Notice, ...]:
     tuple of Notice
         Not yet grouped; see `grouped`.
     """
-    kinds = (_silenced, _believed, _turned, _headings, _drifted, _anew, _surprised)
-    return tuple(sorted(chain.from_iterable(kind(evidence) for kind in kinds), key=lambda n: n.start))
+    kinds = (_silenced, _believed, _turned, _leaned, _headings, _drifted, _anew, _surprised)
+    found = sorted(chain.from_iterable(kind(evidence) for kind in kinds), key=lambda n: n.start)
+    return tuple(_rounded(n) for n in found)
 
 
 def grouped(notices: tuple[Notice, ...]) -> tuple[Notice, ...]:
@@ -99,7 +102,7 @@ def grouped(notices: tuple[Notice, ...]) -> tuple[Notice, ...]:
     """
     if len(notices) <= MOST:
         return notices
-    weighed = sorted(notices, key=lambda n: (FIRST.index(n.kind) > 1, -n.lasting))
+    weighed = sorted(notices, key=lambda n: (FIRST.index(n.kind) > 2, -n.lasting))
     told, rest = weighed[: MOST - 1], weighed[MOST - 1 :]
     begin, end = min(n.start for n in rest), max(n.end for n in rest)
     channels = ", ".join(dict.fromkeys(n.channel for n in sorted(rest, key=lambda n: n.start)))
@@ -130,6 +133,8 @@ def _silenced(e: Evidence) -> Iterator[Notice]:
             until = f"to {end:.0f} s" if again else "on"
             after = "used again since" if again else "to the end"
             why = how(channel, told, rows, e.recording, e.trajectory, e.offsets.get(channel, 0.0))
+            if any(a <= time <= b + INCIDENT for time in _begun_anew(e.journal)):
+                why = "it was the filter that was wrong"
             text = f"{channel} not believed from {begin:.0f} s {until}: {why} ({lasting:.0f} s; {after})"
             yield Notice(begin, end, channel, text, "silenced", lasting)
 
@@ -171,6 +176,17 @@ def _turned(e: Evidence) -> Iterator[Notice]:
         yield Notice(at, at, "imu", text, "turned", 0.0, angle)
 
 
+def _leaned(e: Evidence) -> Iterator[Notice]:
+    """A box that its own gyros felt being turned: it leans as no car does, and goes on doing so."""
+    known = [t for t, angle in e.journal.knocks if abs(angle) > KNOCK]
+    known += _begun_anew(e.journal)
+    for at, angle in leans(e.trajectory):
+        if any(abs(at - time) < INCIDENT for time in known):
+            continue
+        text = f"the box was turned by about {angle / DEG:.0f} deg at {at - e.start:.0f} s, as its own gyros felt"
+        yield Notice(at - e.start, at - e.start, "imu", text, "leaned", 0.0, angle)
+
+
 def _headings(e: Evidence) -> Iterator[Notice]:
     """A heading that was put right."""
     moves = [(t, abs(size)) for t, what, size in e.journal.moves if what == "heading"]
@@ -191,11 +207,10 @@ def _drifted(e: Evidence) -> Iterator[Notice]:
 
 def _anew(e: Evidence) -> Iterator[Notice]:
     """Alignments that threw away what was believed."""
-    for time, evidence in e.journal.alignments:
-        if "anew" in evidence:
-            at = time - e.start
-            text = f"begun anew at {at:.0f} s: the filter was beyond what fixes put right"
-            yield Notice(at, at, "filter", text, "anew")
+    for time in _begun_anew(e.journal):
+        at = time - e.start
+        text = f"begun anew at {at:.0f} s: the filter was beyond what fixes put right"
+        yield Notice(at, at, "filter", text, "anew")
 
 
 def _surprised(e: Evidence) -> Iterator[Notice]:
@@ -216,8 +231,18 @@ def _surprised(e: Evidence) -> Iterator[Notice]:
 # --- parts of them ------------------------------------------------------------------------------
 
 
+def _rounded(n: Notice) -> Notice:
+    """Figures as good as they are."""
+    start, end, lasting = (round(x, 2) for x in (n.start, n.end, n.lasting))
+    return replace(n, start=start, end=end, lasting=lasting, size=round(n.size, 4))
+
+
 def _ruled(journal: Journal, channel: str, ruling: str) -> list[float]:
     return [t for t, c, r in journal.rulings if c == channel and r == ruling]
+
+
+def _begun_anew(journal: Journal) -> list[float]:
+    return [time for time, evidence in journal.alignments if "anew" in evidence]
 
 
 def _in_silence(journal: Journal, channel: str, time: Array) -> NDArray[np.bool_]:

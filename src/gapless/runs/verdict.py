@@ -7,6 +7,7 @@ from typing import Final
 
 import numpy as np
 
+from gapless.runs.notices import PLACE
 from gapless.trip.recording import Gnss, Trajectory
 from gapless.trip.solution import Decision, Notice
 from gapless.units import DEG
@@ -69,8 +70,7 @@ def _clauses(notices: tuple[Notice, ...]) -> Iterator[str]:
         yield from (f"{channel} was not believed for {lasting:.0f} s" for channel, lasting in silenced.items())
     elif silenced:
         yield _listed([f"{c} ({s:.0f} s)" for c, s in silenced.items()]) + " were not believed"
-    turned = [n.size for n in notices if n.kind == "turned"]
-    if turned:
+    if turned := [n.size for n in notices if n.kind in ("turned", "leaned")]:
         yield f"the box was turned by about {max(turned) / DEG:.0f} deg"
     if any(n.kind == "anew" for n in notices):
         yield "the filter had to begin anew"
@@ -78,11 +78,20 @@ def _clauses(notices: tuple[Notice, ...]) -> Iterator[str]:
         yield f"a gyro's zero moved by {max(moved) / DEG:.1f} deg/s"
     if headings := [n.size for n in notices if n.kind == "heading"]:
         yield f"the heading was off by {max(headings) / DEG:.0f} deg"
-    if channels := dict.fromkeys(NAMES.get(n.channel, n.channel) for n in notices if n.kind == "believed"):
-        yield f"{_listed([*channels])} {'were' if len(channels) > 1 else 'was'} believed against the filter"
+    yield from _believed([n for n in notices if n.kind == "believed"])
     for n in notices:
         if n.kind == "surprised":
             yield f"{NAMES.get(n.channel, n.channel)} disagrees with the filter by more than is stated for {n.lasting:.0f} s"
+
+
+def _believed(notices: list[Notice]) -> Iterator[str]:
+    """Who was right where the filter was not."""
+    if moved := [n.size for n in notices if n.channel == "position" and n.size >= PLACE]:
+        yield f"the fixes' place moved by {max(moved):.0f} m"
+    rest = [n.channel for n in notices if n.channel != "position" or not moved]
+    names = [*dict.fromkeys(NAMES.get(channel, channel) for channel in rest)]
+    if names:
+        yield f"{_listed(names)} {'were' if len(names) > 1 else 'was'} believed against the filter"
 
 
 def _meaning(notices: tuple[Notice, ...], channels: tuple[str, ...]) -> str:
@@ -93,7 +102,9 @@ def _meaning(notices: tuple[Notice, ...], channels: tuple[str, ...]) -> str:
         rest += ["the odometer"] * ("odometer" in channels and "odometer" not in mute)
         rest += ["constraints"] * ("nonholonomic" in channels)
         return f"what is stated in that time rests on {_listed(rest)}"
-    if any(n.kind not in ("silenced", "surprised") for n in notices):
+    if {n.kind for n in notices} == {"leaned"}:
+        return "its gyros felt it, and attitudes are those of the box as it sits"
+    if any(n.kind not in ("silenced", "surprised", "leaned") for n in notices):
         return "until it was noticed, more was stated than was known"
     if mute:
         return "what is stated in that time rests on the other sensors"
