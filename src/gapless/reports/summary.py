@@ -35,8 +35,9 @@ def summarise(solution: Solution, scores: Scores | None = None) -> dict[str, Any
     dict
         For `summary.json`: numbers, strings, lists and dicts; None where a number is not known.
         Metres, seconds, m/s; angles in degrees, their keys end in "_deg"; states name their unit.
-        "verdict" judges the run in a sentence, "" where nothing was noticed; the sizes of "notices" are in SI units.
-        "observability", "wheels" and "rehearsals" are in SI units; their times are those of the IMU's clock.
+        "verdict" judges the run in a sentence, "" where there is nothing to say.
+        "notices", "observability", "wheels" and "rehearsals" are in SI units; times of the latter two are
+        those of the IMU's clock.
     """
     moved = travelled(solution.trajectory)
     return {

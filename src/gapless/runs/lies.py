@@ -12,9 +12,9 @@ from gapless.trip.recording import Array, Recording, Trajectory
 from gapless.trip.solution import Innovations
 
 DRIVES: Final = 1.0
-"""A car that is faster as a rule drives [m/s]."""
+"""A car that is faster drives [m/s]."""
 STANDS: Final = 0.3
-"""A sensor that says less as a rule says that it stands [m/s]."""
+"""A sensor that says less as a rule while it does says that it stands [m/s]."""
 SHARE: Final = 0.1
 """Who went less of the way stood [1]."""
 FAR: Final = 20.0
@@ -53,32 +53,32 @@ def how(
     str
     """
     span = float(told.time[rows][0]), float(told.time[rows][-1])
-    said = _logged(channel, recording, span[0] - offset, span[1] - offset)
-    own = trajectory.v_n[(trajectory.time >= span[0]) & (trajectory.time <= span[1])]
-    speed = float(np.median(np.hypot(own[:, 0], own[:, 1]))) if len(own) else 0.0
+    time, said = _logged(channel, recording, span[0] - offset, span[1] - offset)
+    speed = np.interp(time + offset, trajectory.time, np.hypot(trajectory.v_n[:, 0], trajectory.v_n[:, 1]))
     drove = speed > DRIVES
     repeats = len(said) > 2 and float(np.mean((np.diff(said, axis=0) == 0.0).all(axis=1))) > 0.5
     if channel == "position":
-        if drove and not repeats and _stood(said, speed * (span[1] - span[0])):
+        if drove.any() and not repeats and _stood(said, float(np.mean(speed)) * (span[1] - span[0])):
             return "it stood while the car drove"
-    elif drove and len(said) and float(np.median(np.linalg.norm(said[:, :2], axis=1))) < STANDS:
+    elif drove.any() and float(np.median(np.linalg.norm(said[drove, :2], axis=1))) < STANDS:
         return "it said zero while the car drove"
     if repeats:
         return "it repeated itself to the bit"
     return _aside(told.z[rows]) if channel == "position" else _apart(told.z[rows])
 
 
-def _logged(channel: str, recording: Recording, begin: float, end: float) -> Array:
-    """Readings of a channel in a span of its own clock."""
+def _logged(channel: str, recording: Recording, begin: float, end: float) -> tuple[Array, Array]:
+    """Stamps and readings of a channel in a span of its own clock."""
     if channel == "odometer":
         wheel = recording.odometer
         if wheel is None:
-            return np.zeros((0, 1))
-        return wheel.speed[(wheel.time >= begin) & (wheel.time <= end)].reshape(-1, 1)
+            return np.zeros(0), np.zeros((0, 1))
+        inside = (wheel.time >= begin) & (wheel.time <= end)
+        return wheel.time[inside], wheel.speed[inside].reshape(-1, 1)
     gnss = recording.gnss
     values = gnss.lla if channel == "position" else gnss.v_n
     inside = (gnss.time >= begin) & (gnss.time <= end) & np.isfinite(values).all(axis=1)
-    return values[inside]
+    return gnss.time[inside], values[inside]
 
 
 def _stood(lla: Array, way: float) -> bool:

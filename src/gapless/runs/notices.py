@@ -1,4 +1,4 @@
-"""What a navigator noticed on its way, each in a clause: who was not believed, what moved, what does not fit."""
+"""What a navigator noticed on its way, each in a clause: who was not believed, what moved."""
 
 from __future__ import annotations
 
@@ -157,7 +157,9 @@ def _belief(channel: str, at: float, z: Array) -> Notice:
     away = float(np.hypot(*z[:2])) if len(z) > 1 else abs(float(z[0]))
     if channel == "position":
         height = abs(float(z[2])) if len(z) > 2 else 0.0
-        side = f"{away:.0f} m aside" if away >= height else f"{height:.0f} m {'below' if z[2] > 0 else 'above'}"
+        side = (
+            f"{away:.0f} m aside" if away >= height else f"{height:.0f} m {'below' if z[2] > 0 else 'above'}"
+        )
         text = f"from {at:.0f} s on the fixes' new place was believed, {side}"
         if (away := max(away, height)) < PLACE:
             text = f"at {at:.0f} s fixes were believed against the filter, {away:.1f} m apart"
@@ -183,8 +185,9 @@ def _leaned(e: Evidence) -> Iterator[Notice]:
     for at, angle in leans(e.trajectory):
         if any(abs(at - time) < INCIDENT for time in known):
             continue
-        text = f"the box was turned by about {angle / DEG:.0f} deg at {at - e.start:.0f} s, as its own gyros felt"
-        yield Notice(at - e.start, at - e.start, "imu", text, "leaned", 0.0, angle)
+        at -= e.start
+        text = f"the box was turned by about {angle / DEG:.0f} deg at {at:.0f} s, as its own gyros felt"
+        yield Notice(at, at, "imu", text, "leaned", 0.0, angle)
 
 
 def _headings(e: Evidence) -> Iterator[Notice]:
@@ -275,8 +278,8 @@ def _incidents(times: list[float]) -> list[list[float]]:
 
 def _returns(times: Array, at: float) -> bool:
     """Whether readings came back shortly before, from a silence of their own."""
-    lately = times[(times > at - INCIDENT) & (times <= at)]
-    return len(lately) < 2 or bool((np.diff(lately) > RETURN).any())
+    back = times[1:][np.diff(times) > RETURN]
+    return bool(((back > at - INCIDENT) & (back <= at)).any())
 
 
 def _too_large(time: Array, nis: Array) -> Iterator[tuple[float, float, float]]:

@@ -15,9 +15,7 @@ from gapless.units import DEG
 MOST: Final = 3
 """So many clauses make a sentence."""
 MATTERS: Final = 0.5
-"""What a clock leaves open of the way is spoken of from here on [m]."""
-TWICE: Final = 2.0
-"""And where it is so many times what fixes state."""
+"""What a clock leaves open of the way is spoken of from here on, where it is more than fixes state [m]."""
 NAMES: Final = {"odometer": "the odometer", "nonholonomic": "the wheels' constraint"}
 DRIVES: Final = 1.0
 """Typical is the speed of a car that drives [m/s]."""
@@ -67,7 +65,9 @@ def _clauses(notices: tuple[Notice, ...]) -> Iterator[str]:
             name = NAMES.get(n.channel, n.channel)
             silenced[name] = silenced.get(name, 0.0) + n.lasting
     if len(silenced) == 1:
-        yield from (f"{channel} was not believed for {lasting:.0f} s" for channel, lasting in silenced.items())
+        yield from (
+            f"{channel} was not believed for {lasting:.0f} s" for channel, lasting in silenced.items()
+        )
     elif silenced:
         yield _listed([f"{c} ({s:.0f} s)" for c, s in silenced.items()]) + " were not believed"
     if turned := [n.size for n in notices if n.kind in ("turned", "leaned")]:
@@ -81,7 +81,8 @@ def _clauses(notices: tuple[Notice, ...]) -> Iterator[str]:
     yield from _believed([n for n in notices if n.kind == "believed"])
     for n in notices:
         if n.kind == "surprised":
-            yield f"{NAMES.get(n.channel, n.channel)} disagrees with the filter by more than is stated for {n.lasting:.0f} s"
+            name = NAMES.get(n.channel, n.channel)
+            yield f"{name} disagrees with the filter by more than is stated for {n.lasting:.0f} s"
 
 
 def _believed(notices: list[Notice]) -> Iterator[str]:
@@ -123,7 +124,7 @@ def _vague(decisions: Iterable[Decision], gnss: Gnss, trajectory: Trajectory) ->
     if not len(moving) or not len(stated):
         return ""
     way, states = float(np.median(moving)) * doubts[0], float(np.median(stated))
-    if way < max(MATTERS, TWICE * states):
+    if way < max(MATTERS, states):
         return ""
     return (
         f"the receiver's clock is known to {doubts[0]:.2f} s only, in which the car drives {way:.1f} m as a "
