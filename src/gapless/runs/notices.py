@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from gapless.fold.journal import KNOCK, Journal
 from gapless.runs.leans import leans
 from gapless.runs.lies import how
+from gapless.runs.surprises import too_large
 from gapless.trip.recording import Array, Recording, Trajectory
 from gapless.trip.solution import Innovations, Notice
 from gapless.units import DEG
@@ -25,12 +26,6 @@ RETURN: Final = 5.0
 """Fixes that come back after so long are believed as a matter of course [s]."""
 PLACE: Final = 5.0
 """Fixes that are further off have another place [m]."""
-WINDOW: Final = 10.0
-"""NIS are averaged over windows [s]."""
-WINDOWS: Final = 6
-"""The median of so many windows in a row judges."""
-FAR: Final = 4.0
-"""Innovations are too large for what is stated where their mean square is by this factor [1]."""
 MOST: Final = 8
 """So many notices are told one by one."""
 CHANNELS: Final = ("position", "velocity", "odometer")
@@ -125,47 +120,56 @@ def _silenced(e: Evidence) -> Iterator[Notice]:
         times = told.time[mute]
         for a, b in _runs(times, max(LASTING, 2.5 * interval)):
             rows = (told.time >= a) & (told.time <= b) & mute
-            lasting = float(rows.sum()) * interval
+            lasting = round(float(rows.sum()) * interval, 1)
             if lasting < LASTING:
                 continue
             begin, end = a - e.start, b + interval - e.start
             again = bool(np.isfinite(told.factor[told.time > b]).any())
-            until = f"to {end:.0f} s" if again else "on"
+            until = f"to {end:.0f} s" if again else "s on"
             after = "used again since" if again else "to the end"
             why = how(channel, told, rows, e.recording, e.trajectory, e.offsets.get(channel, 0.0))
             if any(a <= time <= b + INCIDENT for time in _begun_anew(e.journal)):
                 why = "it was the filter that was wrong"
-            text = f"{channel} not believed from {begin:.0f} s {until}: {why} ({lasting:.0f} s; {after})"
+            text = f"{channel} not believed from {begin:.0f} {until}: {why} ({lasting:.0f} s; {after})"
             yield Notice(begin, end, channel, text, "silenced", lasting)
 
 
 def _believed(e: Evidence) -> Iterator[Notice]:
-    """Readings that were believed against the filter."""
+    """Readings that were believed against the filter: places that moved, and all the rest in one."""
     for channel in CHANNELS:
-        last = -np.inf
+        last, rest = -np.inf, []
         for time in _ruled(e.journal, channel, "believe"):
             told, fresh = e.innovations.get(channel), time - last > INCIDENT
             last = time
             if told is None or not fresh or _returns(told.time, time):
                 continue
             z = told.z[min(int(np.searchsorted(told.time, time)), len(told) - 1)]
-            yield _belief(channel, time - e.start, z)
+            at, away = time - e.start, float(np.linalg.norm(z))
+            if channel == "position" and away >= PLACE:
+                text = f"from {at:.0f} s on the fixes' new place was believed, {_side(z)}"
+                yield Notice(at, at, channel, text, "believed", 0.0, away)
+            else:
+                rest.append((at, away))
+        if rest:
+            yield _beliefs(channel, rest)
 
 
-def _belief(channel: str, at: float, z: Array) -> Notice:
-    """That of one reading."""
-    away = float(np.hypot(*z[:2])) if len(z) > 1 else abs(float(z[0]))
-    if channel == "position":
-        height = abs(float(z[2])) if len(z) > 2 else 0.0
-        side = (
-            f"{away:.0f} m aside" if away >= height else f"{height:.0f} m {'below' if z[2] > 0 else 'above'}"
-        )
-        text = f"from {at:.0f} s on the fixes' new place was believed, {side}"
-        if (away := max(away, height)) < PLACE:
-            text = f"at {at:.0f} s fixes were believed against the filter, {away:.1f} m apart"
-    else:
-        text = f"at {at:.0f} s {NAMES[channel]} were believed against the filter, {away:.1f} m/s apart"
-    return Notice(at, at, channel, text, "believed", 0.0, away)
+def _side(z: Array) -> str:
+    """Where a place lies."""
+    away = float(np.hypot(*z[:2]))
+    if away >= abs(z[2]):
+        return f"{away:.0f} m aside"
+    return f"{abs(z[2]):.0f} m {'below' if z[2] > 0.0 else 'above'}"
+
+
+def _beliefs(channel: str, found: list[tuple[float, float]]) -> Notice:
+    """All that a channel was believed, but for places."""
+    begin, end, most = found[0][0], found[-1][0], max(away for _, away in found)
+    when, much = f"at {begin:.0f} s", f"{most:.1f} {'m' if channel == 'position' else 'm/s'} apart"
+    if len(found) > 1:
+        when, much = f"{len(found)} times from {begin:.0f} to {end:.0f} s", f"at most {much}"
+    text = f"{NAMES[channel]} were believed against the filter {when}, {much}"
+    return Notice(begin, end, channel, text, "believed", 0.0, most)
 
 
 def _turned(e: Evidence) -> Iterator[Notice]:
@@ -223,7 +227,7 @@ def _surprised(e: Evidence) -> Iterator[Notice]:
         if told is None:
             continue
         used = np.isfinite(told.factor) & np.isfinite(told.nis)
-        for a, b, ratio in _too_large(told.time[used], told.nis[used] / max(told.z.shape[1], 1)):
+        for a, b, ratio in too_large(told.time[used], told.nis[used] / max(told.z.shape[1], 1)):
             begin, end = a - e.start, b - e.start
             verb = "disagrees" if channel == "nonholonomic" else "disagree"
             much = "it states" if channel == "nonholonomic" else "they state"
@@ -280,28 +284,3 @@ def _returns(times: Array, at: float) -> bool:
     """Whether readings came back shortly before, from a silence of their own."""
     back = times[1:][np.diff(times) > RETURN]
     return bool(((back > at - INCIDENT) & (back <= at)).any())
-
-
-def _too_large(time: Array, nis: Array) -> Iterator[tuple[float, float, float]]:
-    """Stretches in which the median of means over windows is too large: from, until, by how much."""
-    if not len(time):
-        return
-    bins = ((time - time[0]) // WINDOW).astype(int)
-    counts = np.bincount(bins)
-    if len(counts) < WINDOWS:
-        return
-    means = np.full(len(counts), np.nan)
-    np.divide(np.bincount(bins, nis), counts, out=means, where=counts > 0)
-    views = np.lib.stride_tricks.sliding_window_view(means, WINDOWS)
-    full = np.isfinite(views).sum(axis=1) > WINDOWS // 2
-    far = np.zeros(len(counts), bool)
-    for k in np.flatnonzero(full):
-        if np.nanmedian(views[k]) > FAR:
-            far[k : k + WINDOWS] = True
-    edges = np.flatnonzero(np.diff(np.concatenate([[0], far.astype(int), [0]])))
-    for first, last in edges.reshape(-1, 2):
-        worst = first + np.flatnonzero(means[first:last] > FAR)
-        a, b = worst[0], worst[-1] + 1
-        if b - a >= WINDOWS:
-            until = min(float(time[0]) + b * WINDOW, float(time[-1]))
-            yield float(time[0]) + a * WINDOW, until, float(np.nanmedian(means[a:b]))

@@ -114,7 +114,7 @@ def test_decision_values_read_well():
 
 
 NOTICE = Notice(
-    300.0, 343.0, "position", "position not believed from 300 s to 343 s: it lay 22 m aside", "silenced"
+    300.0, 343.0, "position", "position not believed from 300 to 343 s: it lay 22 m aside", "silenced"
 )
 
 

@@ -86,7 +86,7 @@ LIES = {
 def test_a_position_that_was_not_believed_is_named_by_its_lie(lie):
     (notice,) = noticed(made(mute(), lla=LIES[lie]))
     assert lie in notice.text
-    assert "position not believed from 120 s to 150 s" in notice.text
+    assert "position not believed from 120 to 150 s" in notice.text
     assert "30 s; used again since" in notice.text
     assert (notice.start, notice.end, notice.lasting, notice.kind) == (120.0, 150.0, 30.0, "silenced")
 
@@ -126,6 +126,16 @@ def test_fixes_that_were_believed_have_a_new_place():
     assert notice.text == "from 200 s on the fixes' new place was believed, 22 m aside"
     away = np.arange(SECONDS)
     assert noticed(made(rulings, lla=lla, keep=(away < 150) | (away > 195))) == ()  # back from an outage
+
+
+def test_small_beliefs_of_a_channel_are_one_notice():
+    rulings = [
+        (START + t + k, "velocity", r) for t in (50, 60, 200) for k, r in enumerate(("believe", "use"))
+    ]
+    (notice,) = noticed(made(rulings, speed=np.full(SECONDS, SPEED + 0.5)))
+    assert (
+        "velocities were believed against the filter 2 times from 50 to 200 s, at most 0.5 m/s" in notice.text
+    )
 
 
 def test_what_moved_is_one_incident():
