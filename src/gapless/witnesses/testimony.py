@@ -132,8 +132,8 @@ class Testimony:
         slack : Slack
             Left to the filter.
         denied, contradicted : bool
-            Whether others are with the filter, so that what it says is not believed however long it insists:
-            while it is heard, and once it was silenced.
+            Whether others are with the filter: one that is heard and insists is then silenced, not believed;
+            one that was silenced is not believed however long it insists.
         accused : bool
             Whether it tells the story of a channel that lied.
 
@@ -173,7 +173,7 @@ class Testimony:
 
     def _insists(self, said: Said, denied: bool) -> Ruling:
         """Whether a channel that is heard has surprised the filter for too long to be an accident."""
-        if said.fits or denied or self.surprised == math.inf:
+        if said.fits or self.surprised == math.inf:
             self.surprises, self.surprised, self.worst = 0, said.time, 0.0
             return "use"
         self.surprises, self.worst = self.surprises + 1, max(self.worst, said.nis)
@@ -183,6 +183,10 @@ class Testimony:
         if said.nis < WANES * self.worst:  # a receiver's mistake passes, a filter's does not by itself
             return "use"
         self.surprises, self.surprised, self.worst = 0, said.time, 0.0
+        if denied:
+            self.silent = self.follows = said.time
+            self.lies += 1
+            return "silence"
         return "believe"
 
     def _again(self, said: Said, contradicted: bool) -> Ruling:
