@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from functools import partial
 from typing import Any, Self
 
 import numpy as np
@@ -13,57 +14,31 @@ from gapless.filters.consider import Wander
 from gapless.filters.stamp_doubt import StampDoubt
 from gapless.fold.assimilate import assimilate
 from gapless.fold.begin import begin
+from gapless.fold.box import before_box, in_box, watch
 from gapless.fold.journal import Journal
 from gapless.fold.manner import Manner
+from gapless.fold.observed import observed
 from gapless.fold.settings import Settings
 from gapless.fold.state import Past, State
+from gapless.fold.stated import beside
 from gapless.fold.tape import Tape
 from gapless.inertial import propagate as at
 from gapless.inertial.belief import Belief, inject
 from gapless.inertial.cubature import propagate_points
 from gapless.inertial.lately import Filling
-from gapless.inertial.layout import ROW
 from gapless.inertial.pieces import parted, pieces, without_holes
 from gapless.inertial.unseen import stray, tilt
 from gapless.measurements.base import Observation
 from gapless.trip.events import EPS, GAP, Event, ImuBlock, Motion, Reading
 from gapless.trip.recording import Array
 from gapless.witnesses.hearing import Hearing
-from gapless.witnesses.jolt import Jolt
 
-STILL = 1.0
-"""For so long after the last word of rest a car stands [s]."""
-HOLDS = 4.0
-"""A 95 % ellipse (5.99) holds what is off by the root of its variance times this, with some room."""
 __all__ = ["Navigator", "Settings"]
 
 
 def load_kernels() -> None:
     """Do now what the first kernel called would wait for: a fifth of a second, once a process."""
     inject(np.array([0.0] * 6 + [1.0] + [0.0] * 9), np.zeros(15))
-
-
-def in_box(block: ImuBlock, box: Array | None) -> ImuBlock:
-    """Samples in the axes of the box as it sat at first.
-
-    Parameters
-    ----------
-    block : ImuBlock
-    box : ndarray, shape (3, 3), or None
-        None where it was never moved.
-
-    Returns
-    -------
-    ImuBlock
-    """
-    if box is None:
-        return block
-    # column by column: a matrix product's bits would depend on how many rows there are
-    dtheta, dvel = (
-        np.stack([v[:, 0] * r[0] + v[:, 1] * r[1] + v[:, 2] * r[2] for r in box], axis=1)
-        for v in (block.dtheta, block.dvel)
-    )
-    return block._replace(dtheta=dtheta, dvel=dvel)
 
 
 class Navigator:
@@ -253,7 +228,7 @@ class Navigator:
                 begin(start, state, self.settings, self.journal, self.tape)
             if start is not None or not state.aligned:
                 return
-        observation = self._observed(reading)
+        observation = observed(state, self.settings, reading)
         state.face(observation)
         used = self._update(reading.channel, reading.time, observation, reading)
         if used:
@@ -263,26 +238,6 @@ class Navigator:
                 bridge.lost()
             else:
                 bridge.hear(state.belief, reading, used)
-
-    def _observed(self, reading: Reading) -> Observation:
-        """What a reading says; of wheels without a sign, what both ways of rolling make of it."""
-        sensor, belief = self.settings.sensors[reading.channel], self._state.belief
-        observation = sensor.observe(belief, reading)
-        if reading.channel == "position":
-            return observation._replace(
-                R=observation.R * self._state.hearing.resting(reading.time, self._rests)
-            )
-        if reading.channel != "odometer":
-            return observation
-        back, h = sensor.observe(belief, reading._replace(value=-reading.value)), observation.H
-        hph = float((h @ belief.P @ h.T)[0, 0])
-        return self._state.hearing.sign.settles(float(reading.value[0]), observation, back, hph)
-
-    @property
-    def _rests(self) -> bool:
-        """Whether the car stands by its own stillness."""
-        state = self._state
-        return state.clock - state.heard.get("zero_velocity", -math.inf) < STILL
 
     # --- samples --------------------------------------------------------------------------------
 
@@ -308,21 +263,11 @@ class Navigator:
 
     def _go(self, stretch: ImuBlock, doubt: Array | None = None) -> None:
         """Run through samples without a hole; `doubt` of those that are guessed."""
-        for piece in pieces(stretch, self._state.pending, self._before):
+        for piece in pieces(stretch, self._state.pending, partial(before_box, self._state)):
             if piece.last > piece.first:
                 self._run(*piece, doubt)
             if piece.due:
                 self._apply_due()
-
-    def _before(self) -> Array:
-        """What the last sample left behind, as the sensors felt it."""
-        memory, box = self._state.belief.memory, self._state.box
-        if box is None:
-            return memory
-        felt = memory.copy()
-        for k in (at.PREV_THETA, at.PREV_VEL):
-            felt[k : k + 3] = box.T @ memory[k : k + 3]
-        return felt
 
     def _run(self, block: ImuBlock, first: int, last: int, due: bool, doubt: Array | None) -> None:
         """Propagate samples first..last-1, ticking on the way; `due`: an observation waits there."""
@@ -404,12 +349,7 @@ class Navigator:
         dt = float(m[at.TICK_DT])
         motion = Motion(state.clock, dt, m[at.TICK_W :] / dt)
         m[at.TICK_DT :] = 0.0
-        tilt = math.sqrt(max(0.5 * float(state.belief.p[6 * ROW + 6] + state.belief.p[7 * ROW + 7]), 0.0))
-        c = state.belief.C_nb
-        turning = np.cross(motion.rate, c.T @ state.belief.v_n)  # a corner leans on the box, no blow does
-        jolt = state.hearing.jolts.feel(motion.force - turning, c, tilt, dt)
-        if jolt is not None and not state.lost:  # else it is the attitude that leans
-            self._knocked(jolt)
+        watch(state, self.settings, self.journal, motion)
         for name, constraint in state.constraints.items():
             if state.guessed and constraint.needs_samples:
                 continue
@@ -428,33 +368,12 @@ class Navigator:
                             state.heard["bridge"] = motion.time
         self._row()
 
-    def _knocked(self, jolt: Jolt) -> None:
-        """The box was turned: what it feels is taken to the axes of before, and doubted."""
-        state = self._state
-        state.box = jolt.turn if state.box is None else jolt.turn @ state.box
-        state.belief.knocked(jolt.turn, jolt.since, jolt.gained, self.settings.ceiling)
-        state.hearing.forget()
-        state.hearing.moved = state.clock
-        for bridge in state.bridges:
-            bridge.lost()
-        self.journal.knock(state.clock - jolt.since, jolt.angle)
-
     def _row(self) -> None:
         """Write a row where one is due; it changes nothing of the belief."""
         state, often = self._state, self.settings.row
         if state.clock >= state.next_row - EPS:
             state.next_row = max(state.next_row + often, state.clock + 0.5 * often)
-            source = state.source
-            shared = state.wander.response + state.stamps.stated(self.settings.doubt)
-            if self.settings.arm_doubt.any():
-                c = state.belief.C_nb
-                shared = shared + c @ self.settings.arm_doubt @ c.T
-            off = state.hearing.offset
-            if off.any():  # fixes that moved away and stay there: nobody knows yet which place is right
-                shared = shared + np.outer(off, off) / HOLDS
-            if source != "gnss" and state.manner.scale != 1.0:
-                shared = shared + (state.manner.scale - 1.0) * state.belief.P[:3, :3]
-            row = state.clock, state.stated, shared, source
+            row = state.clock, state.stated, beside(state, self.settings), state.source
             self.journal.row(*row)
             if self.tape is not None:
                 self.tape.row(*row)

@@ -1,0 +1,41 @@
+"""What a reading says of the belief, beside what its sensor alone would make of it."""
+
+from __future__ import annotations
+
+import math
+
+from gapless.fold.settings import Settings
+from gapless.fold.state import State
+from gapless.measurements.base import Observation
+from gapless.trip.events import Reading
+
+STILL = 1.0
+"""For so long after the last word of rest a car stands [s]."""
+
+
+def observed(state: State, settings: Settings, reading: Reading) -> Observation:
+    """The observation of a reading.
+
+    Fixes of a standing car have their error in common, and count less. Of wheels without a sign both ways of
+    rolling are heard.
+
+    Parameters
+    ----------
+    state : State
+    settings : Settings
+    reading : Reading
+
+    Returns
+    -------
+    Observation
+    """
+    sensor, belief, hearing = settings.sensors[reading.channel], state.belief, state.hearing
+    observation = sensor.observe(belief, reading)
+    if reading.channel == "position":
+        rests = state.clock - state.heard.get("zero_velocity", -math.inf) < STILL
+        return observation._replace(R=observation.R * hearing.resting(reading.time, rests))
+    if reading.channel != "odometer":
+        return observation
+    back, h = sensor.observe(belief, reading._replace(value=-reading.value)), observation.H
+    hph = float((h @ belief.P @ h.T)[0, 0])
+    return hearing.sign.settles(float(reading.value[0]), observation, back, hph)
