@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import click
@@ -29,5 +30,6 @@ def inspect(**chosen: Any) -> None:
 
     with progress("deciding", work.recording.duration) as tell:
         solution = fuse(work.recording, work.system, work.outages, 1.0, work.causal, tell)
-    nothing: dict[str, Any] = {"states": {}, "innovations": {}, "scores": None, "outages": [], "notes": []}
-    say(*summary_lines(summarise(solution) | nothing)[3:])
+    told = summarise(replace(solution, notes=solution.notes[len(work.recording.notes) :]))
+    nothing: dict[str, Any] = {"states": {}, "innovations": {}, "scores": None, "outages": []}
+    say(*summary_lines(told | nothing, head=False))

@@ -78,6 +78,7 @@ def assimilate(
         drift = state.bench.drifts(time, o.z[3:], b)
         if drift is not None:
             b.drift(drift)
+            journal.moved(time, "gyro", float(np.linalg.norm(drift)))
             nis, s, hp = assess(b.p, ROW, n, o.z, o.H, o.R)
     elif channel == "nonholonomic" and state.bench.in_vain(channel, time, nis <= soft_bound(o.z.size)):
         journal.knock(time, b.remount(o.z))
@@ -92,6 +93,8 @@ def assimilate(
         verdict = state.adaptation[kind_of(channel)].judge(told)
         if verdict.r is o.R and not verdict.widen:
             state.agreed[channel] = time
+        if verdict.widen and reading is not None:
+            journal.heard(channel, time, "believe")
     elif not math.isfinite(nis) and (
         not np.isfinite(b.x).all() or (np.isfinite(o.z).all() and np.isfinite(o.R).all())
     ):
@@ -154,6 +157,8 @@ def _turn(state: State, z: Array, journal: Journal, time: float) -> None:
         journal.knock(time, angle)
         state.bench.moved = time
         angle = 0.0
+    else:
+        journal.moved(time, "heading", angle)
     b.turn(angle)
 
 

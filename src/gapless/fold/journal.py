@@ -63,6 +63,7 @@ class Journal:
         self.ruled: dict[str, tuple[float, str]] = {}
         self.knocks: list[tuple[float, float]] = []
         self.knocked = -math.inf
+        self.moves: list[tuple[float, str, float]] = []
 
     def row(self, time: float, belief: Belief, shared: Array, source: str) -> None:
         """Write the belief down.
@@ -118,7 +119,7 @@ class Journal:
         time : float
             [s]
         ruling : str
-            "use", "silence" or "believe".
+            "use", "silence", "believe" or "turn".
         """
         when, before = self.ruled.get(channel, (-math.inf, "use"))
         if time > when and ruling != before:
@@ -138,6 +139,21 @@ class Journal:
         if time > self.knocked + 1.0:
             self.knocks.append((time, angle))
             self.knocked = time
+
+    def moved(self, time: float, what: str, size: float) -> None:
+        """Write down that something else was found to have moved.
+
+        Parameters
+        ----------
+        time : float
+            [s]
+        what : str
+            "gyro": its zero [rad/s]; "heading": what the filter took for it [rad].
+        size : float
+            By how much.
+        """
+        if not self.moves or time > self.moves[-1][0]:
+            self.moves.append((time, what, size))
 
     def align(self, time: float, evidence: str) -> None:
         """Write an alignment down.
@@ -168,6 +184,7 @@ class Journal:
             dict(self.ruled),
             len(self.knocks),
             self.knocked,
+            len(self.moves),
         )
 
     def rewind(self, mark: Any) -> None:
@@ -178,7 +195,7 @@ class Journal:
         mark : object
             From `mark`.
         """
-        self.last, n, counts, latest, aligned, ruled, last, knocked, self.knocked = mark
+        self.last, n, counts, latest, aligned, ruled, last, knocked, self.knocked, moved = mark
         self.latest, self.ruled = dict(latest), dict(last)
         for rows in (self.times, self.states, self.variances, self.shared, self.sources):
             del rows[n:]
@@ -187,6 +204,7 @@ class Journal:
         del self.alignments[aligned:]
         del self.rulings[ruled:]
         del self.knocks[knocked:]
+        del self.moves[moved:]
 
     def after(self, other: Journal) -> None:
         """Start empty where another journal stands.

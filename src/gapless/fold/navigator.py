@@ -31,6 +31,8 @@ from gapless.trip.recording import Array
 from gapless.witnesses.bench import Bench
 from gapless.witnesses.jolt import Jolt
 
+STILL = 1.0
+"""For so long after the last word of rest a car stands [s]."""
 HOLDS = 4.0
 """A 95 % ellipse (5.99) holds what is off by the root of its variance times this, with some room."""
 __all__ = ["Navigator", "Settings"]
@@ -266,11 +268,21 @@ class Navigator:
         """What a reading says; of wheels without a sign, what both ways of rolling make of it."""
         sensor, belief = self.settings.sensors[reading.channel], self._state.belief
         observation = sensor.observe(belief, reading)
+        if reading.channel == "position":
+            return observation._replace(
+                R=observation.R * self._state.bench.resting(reading.time, self._rests)
+            )
         if reading.channel != "odometer":
             return observation
         back, h = sensor.observe(belief, reading._replace(value=-reading.value)), observation.H
         hph = float((h @ belief.P @ h.T)[0, 0])
         return self._state.bench.sign.settles(float(reading.value[0]), observation, back, hph)
+
+    @property
+    def _rests(self) -> bool:
+        """Whether the car stands by its own stillness."""
+        state = self._state
+        return state.clock - state.heard.get("zero_velocity", -math.inf) < STILL
 
     # --- samples --------------------------------------------------------------------------------
 

@@ -39,6 +39,8 @@ class Content(NamedTuple):
         Assets that run after the shared ones, in order.
     styles : tuple of str
         Assets besides the shared ones.
+    verdict : str
+        What must be known before anything else is read; "" where there is nothing.
     """
 
     name: str
@@ -49,6 +51,7 @@ class Content(NamedTuple):
     data: Any
     scripts: tuple[str, ...]
     styles: tuple[str, ...] = ()
+    verdict: str = ""
 
 
 def render(content: Content) -> str:
@@ -68,6 +71,7 @@ def render(content: Content) -> str:
         name=escape(content.name),
         kind=escape(content.kind),
         lead=escape(content.lead),
+        verdict=f'<p class="verdict">{escape(content.verdict)}</p>' if content.verdict else "",
         tiles=_tiles(content.tiles),
         body=content.body,
         style=_style(content.styles),

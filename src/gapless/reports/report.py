@@ -25,6 +25,7 @@ _SECTIONS = (
     ("decisions", "Decisions", tables.decisions),
     ("innovations", "Innovations", tables.innovations),
     ("states", "States at the end", tables.states),
+    ("notices", "Noticed on the way", tables.notices),
     ("notes", "Noticed in the recording", tables.notes),
 )
 
@@ -101,6 +102,7 @@ def page(
         body=fill("fuse/body.html", {key: section(key, title, make(told)) for key, title, make in _SECTIONS}),
         data=payload(solution, recording, scores, background, exhibits),
         scripts=("fuse/track.js", "fuse/main.js"),
+        verdict=told.get("verdict", ""),
     )
     return render(content)
 

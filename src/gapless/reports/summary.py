@@ -35,13 +35,17 @@ def summarise(solution: Solution, scores: Scores | None = None) -> dict[str, Any
     dict
         For `summary.json`: numbers, strings, lists and dicts; None where a number is not known.
         Metres, seconds, m/s; angles in degrees, their keys end in "_deg"; states name their unit.
-        "observability", "wheels" and "rehearsals" are in SI units; their times are those of the IMU's clock.
+        "verdict" judges the run in a sentence, "" where there is nothing to say.
+        "notices", "observability", "wheels" and "rehearsals" are in SI units; times of the latter two are
+        those of the IMU's clock.
     """
     moved = travelled(solution.trajectory)
     return {
         "gapless": __version__,
         "name": solution.name,
         "system": solution.system,
+        "verdict": solution.verdict,
+        "notices": [plain(one) for one in solution.notices],
         "start": plain(solution.start),
         "rows": len(solution.trajectory),
         "duration": plain(span(solution.trajectory)),

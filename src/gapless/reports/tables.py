@@ -273,6 +273,22 @@ def states(summary: Summary) -> str:
     return table("States at the end", head, rows) if rows else ""
 
 
+def notices(summary: Summary) -> str:
+    """What went wrong on the way.
+
+    Parameters
+    ----------
+    summary : mapping
+
+    Returns
+    -------
+    str
+        HTML: a list; "" where nothing was noticed.
+    """
+    items = "".join(f"<li>{escape(notice['text'])}</li>" for notice in summary.get("notices", ()))
+    return f"<ul class=notes>{items}</ul>" if items else ""
+
+
 def notes(summary: Summary) -> str:
     """What was mended or noticed in the recording.
 

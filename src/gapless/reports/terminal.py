@@ -14,34 +14,45 @@ from gapless.reports.summary import decision_of, decision_value, unstated
 _WIDTH = 80
 
 
-def summary_lines(summary: Mapping[str, Any]) -> list[str]:
+def summary_lines(summary: Mapping[str, Any], head: bool = True) -> list[str]:
     """A summary for the terminal.
 
     Parameters
     ----------
     summary : mapping
         As `summarise` returns it, or as it comes back from JSON.
+    head : bool
+        Whether to begin with what was fused.
 
     Returns
     -------
     list of str
         At most 80 columns wide.
     """
-    lines = [f"{summary['name']} · {summary['system']} · gapless {summary['gapless']}"]
-    lines.append(f"{duration(summary['duration'])}, {distance(summary['distance'])}")
+    lines = [summary["verdict"]] if summary.get("verdict") else []
+    if head:
+        lines.insert(0, f"{summary['name']} · {summary['system']} · gapless {summary['gapless']}")
+        lines.append(f"{duration(summary['duration'])}, {distance(summary['distance'])}")
     for title, part in (
         ("Decisions", _decision_lines),
         ("States at the end", _state_lines),
         ("Innovations", _innovation_lines),
         ("Accuracy", _score_lines),
         ("Outages", _outage_lines),
-        ("Noticed", _note_lines),
+        ("Noticed on the way", _notice_lines),
+        ("Noticed in the recording", _note_lines),
     ):
         found = list(part(summary))
         if found:
-            lines += ["", title, *found]
-    wrapped = (textwrap.wrap(line, _WIDTH, subsequent_indent=" " * 6) or [""] for line in lines)
+            lines += [*[""] * bool(lines), title, *found]
+    wrapped = (_wrapped(line) for line in lines)
     return [line.replace("\u00a0", " ") for part in wrapped for line in part]
+
+
+def _wrapped(line: str) -> list[str]:
+    """A line on as many as it takes; what is indented goes on further in."""
+    deeper = " " * 6 if line.startswith(" ") else ""
+    return textwrap.wrap(line, _WIDTH, subsequent_indent=deeper) or [""]
 
 
 def _decision_lines(summary: Mapping[str, Any]) -> Iterator[str]:
@@ -104,6 +115,11 @@ def _outage_lines(summary: Mapping[str, Any]) -> Iterator[str]:
         yield f"  largest error over {s['count']}: median {median}, P90 {p90}, RMS {root}, worst {worst}"
     if scores["outages_apart"]:
         yield f"  {scores['outages_apart']} of {scores['outages']} left out of these figures"
+
+
+def _notice_lines(summary: Mapping[str, Any]) -> Iterator[str]:
+    for notice in summary.get("notices", ()):
+        yield f"  {notice['text']}"
 
 
 def _note_lines(summary: Mapping[str, Any]) -> Iterator[str]:

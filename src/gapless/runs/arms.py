@@ -9,13 +9,15 @@ is late look alike. With any other receiver the arm hides behind the errors of i
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import replace
-from typing import NamedTuple, Protocol, TypeVar
+from typing import Final, NamedTuple, Protocol, TypeVar
 
 import numpy as np
 from msgspec import structs
 
+from gapless.alignment.uneven import Jitter
 from gapless.filters.quantile import chi_square_quantile
 from gapless.fold.feed import events
 from gapless.fold.navigator import Navigator
@@ -53,6 +55,10 @@ ROUNDS, SETTLED = 5, 0.05
 a quarter of the error."""
 
 
+SPEED: Final = 10.0
+"""At which stamps that are uneven are held against an arm [m/s]: that of turns in a city."""
+
+
 class Known(Protocol):
     """What a first pass found before."""
 
@@ -75,6 +81,10 @@ class Known(Protocol):
     @property
     def clock_sd(self) -> float:
         """Standard deviation of the positions' clock offset [s]."""
+
+    @property
+    def jitter(self) -> Jitter:
+        """By how much stamps are uneven."""
 
 
 K = TypeVar("K", bound=Known)
@@ -176,7 +186,7 @@ def settle(past: Recording, system: System, first: Callable[[System], K]) -> tup
     arm : Arm
     """
     told, known = told_arm(system, past), first(system)
-    if known.span == 0.0 or not _shows(past, system):
+    if known.span == 0.0 or not _shows(past, system, known.jitter.lasting):
         return known, Arm(lever_arm(system, past), None, _taken(system, past, None))
     then = _in_turn(past, system, first, known)
     found = _look(past, *then)
@@ -206,13 +216,17 @@ def _in_turn(past: Recording, system: System, first: Callable[[System], K], know
     return armed, known
 
 
-def _shows(past: Recording, system: System) -> bool:
-    """Whether fixes are good enough to show an arm, and the recipe does not look for it anyway."""
+def _shows(past: Recording, system: System, uneven: float) -> bool:
+    """Whether fixes are good enough to show an arm, and the recipe does not look for it anyway.
+
+    Stamps that are uneven for seconds, by `uneven`, move fixes like an arm does.
+    """
     gnss = past.gnss
     fixed = np.isfinite(gnss.lla).all(axis=1)
     if "lever_arm" in system.filter.states or "position" not in system.sensors or not fixed.any():
         return False
-    return bool(np.median(gnss.sd_position[fixed, :2].max(axis=1)) < PRECISE)
+    stated = float(np.median(gnss.sd_position[fixed, :2].max(axis=1)))
+    return math.hypot(stated, uneven * SPEED) < PRECISE
 
 
 def _look(past: Recording, system: System, known: Known) -> Found | None:

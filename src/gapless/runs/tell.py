@@ -10,6 +10,9 @@ from gapless.rehearsal.stage import Rehearsing
 from gapless.runs.arms import at_end
 from gapless.runs.conduct import Folding
 from gapless.runs.decide import Decided
+from gapless.runs.notices import Evidence, grouped, noticed
+from gapless.runs.prepare import withhold_from
+from gapless.runs.verdict import judge
 from gapless.scenarios import Outage
 from gapless.systems.denoising import denoiser
 from gapless.systems.recipe import System
@@ -51,13 +54,16 @@ def collect(
             "lower alignment.min_speed in the configuration"
         )
     states, sds = journal.blocks()
+    trajectory, innovations = journal.trajectory(), journal.innovations()
+    fed = withhold_from(recording, outages)
+    seen = noticed(Evidence(journal, innovations, trajectory, fed, decided.offsets))
     return Solution(
         name=recording.name,
         system=system.name,
-        trajectory=journal.trajectory(),
+        trajectory=trajectory,
         states=states,
         states_sd=sds,
-        innovations=journal.innovations(),
+        innovations=innovations,
         decisions=(
             *denoise_decisions(system),
             *static_decisions(recording, system),
@@ -75,6 +81,8 @@ def collect(
             *(e for bridge in navigator.bridges if (e := bridge.exhibit()) is not None),
             *((navigator.exhibit(),) if isinstance(navigator, Rehearsing) else ()),
         ),
+        notices=grouped(seen),
+        verdict=judge(seen, decided.decisions, fed.gnss, trajectory, innovations),
     )
 
 

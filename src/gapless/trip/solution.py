@@ -66,6 +66,36 @@ class Innovations(Columns):
     factor: Array
 
 
+@dataclass(frozen=True)
+class Notice:
+    """Something that went wrong on the way and was noticed.
+
+    Parameters
+    ----------
+    start, end : float
+        Seconds after the first IMU sample; the same for what happened in a moment.
+    channel : str
+        "position", "velocity", "odometer", "nonholonomic", or "imu", "gyro", "filter".
+    text : str
+        One clause, with its times.
+    kind : str
+        "silenced", "believed", "turned", "leaned", "heading", "drifted", "anew", "surprised"; "more" for the
+        rest of many.
+    lasting : float
+        For how long, all told [s]; 0 for what happened in a moment.
+    size : float
+        How large it was, SI units; 0 where that says nothing.
+    """
+
+    start: float
+    end: float
+    channel: str
+    text: str
+    kind: str = ""
+    lasting: float = 0.0
+    size: float = 0.0
+
+
 @dataclass(frozen=True, eq=False)
 class Solution:
     """Result of fusing a recording.
@@ -98,6 +128,10 @@ class Solution:
         By block, standard deviations before there were observations, where the first row knows of later ones.
     exhibits : tuple of Exhibit
         What bridges heard and how the run rehearsed.
+    notices : tuple of Notice
+        What went wrong on the way, in order of time.
+    verdict : str
+        What all of that means for the result, in a sentence; "" where nothing did.
     """
 
     name: str
@@ -113,6 +147,8 @@ class Solution:
     learned: tuple[object, ...] = field(default=())
     start_sd: dict[str, Array] = field(default_factory=dict)
     exhibits: tuple[Exhibit, ...] = field(default=())
+    notices: tuple[Notice, ...] = field(default=())
+    verdict: str = ""
 
     def in_outage(self, time: Array) -> NDArray[np.bool_]:
         """Which times lie in a withheld stretch.

@@ -20,7 +20,7 @@ from gapless.witnesses.receiver import Story
 from gapless.witnesses.sign import Sign
 from gapless.witnesses.testimony import INSISTS, Ruling, Said, Testimony
 
-PATIENCE: Final = {"position": 30.0, "velocity": 20.0, "odometer": 60.0}
+PATIENCE: Final = {"position": 27.0, "velocity": 20.0, "odometer": 60.0}
 """By channel: for so long must what follows the motion contradict the filter to be believed [s]."""
 HORIZONTAL: Final = {"position": slice(0, 3), "velocity": slice(0, 2), "odometer": slice(0, 1)}
 """Components that are compared; a vertical velocity is what receivers are worst at."""
@@ -42,6 +42,8 @@ FITTING: Final = 18.0 * DEG
 """What is askew by less may be a clock, as long as velocities fit [rad]."""
 ACCUSED: Final = 1.5
 """Positions that go with velocities that were silenced so long ago are silenced too [s]."""
+SHARED: Final = 2.0
+"""Fixes of a standing car less apart are one [s]."""
 LOST: Final = 25.0
 """A filter that denies a receiver's consistent story of a drive for so long is what is wrong [s]."""
 RADIUS: Final = 6.371e6
@@ -104,9 +106,13 @@ class Bench:
         raw = self._metres(reading) if channel == "position" else reading.value[part]
         var = o.R.diagonal()[part]
         self._tell(channel, reading.time, raw, float(np.sqrt(var[:2].max())))
+<<<<<<< HEAD
         said = Said(reading.time, reading.value, raw, value, var, fits, self._rests(reading, belief))
         if channel == "position":  # what drifts off while the car stands is the receiver, until it fits
             self.strayed = not fits and (self.strayed or reading.time - self.rested[1] < APART)
+=======
+        said = Said(reading.time, reading.value, raw, value, var, fits, nis, self._rests(reading, belief))
+>>>>>>> main
         ruling = mine.hear(said, self._slack(channel, belief), *self._against(channel, reading.time))
         if channel == "velocity":
             ruling = self._turned(said, ruling)
@@ -206,6 +212,24 @@ class Bench:
         if fits or not seen or long or since == math.inf:
             self.at_odds[name] = time
         return long and seen and not fits
+
+    def resting(self, time: float, rests: bool) -> float:
+        """Factor on the variance of a fix: those of a standing car have their error in common.
+
+        Parameters
+        ----------
+        time : float
+            [s]
+        rests : bool
+            Whether it stands.
+
+        Returns
+        -------
+        float
+            1 plus the seconds that it has stood, over `SHARED`: all fixes of a rest together count as a few.
+        """
+        self.stood = min(self.stood, time) if rests else math.inf
+        return 1.0 + (time - self.stood) / SHARED if rests else 1.0
 
     def _metres(self, reading: Reading) -> Array:
         """A position in metres from the first one; only differences count."""

@@ -28,6 +28,8 @@ INSISTS: Final = 2.5
 """What follows the motion and surprises the filter for so long, without a break, is right [s]."""
 KNOWN: Final = 2.0
 """By so much longer for each time that it was silenced: a receiver that lied before may do so again."""
+WANES: Final = 0.6
+"""Below this share of the largest surprise of its kind, it passes."""
 OFTEN: Final = 3
 """So many readings at least make that."""
 
@@ -51,6 +53,8 @@ class Said(NamedTuple):
         Of its noise.
     fits : bool
         Whether the filter would not be surprised by it.
+    nis : float
+        How surprised it is: z' S^-1 z.
     rests : bool
         Whether it says that the car stands where the filter drives.
     """
@@ -61,6 +65,7 @@ class Said(NamedTuple):
     value: Array
     var: Array
     fits: bool
+    nis: float
     rests: bool = False
 
 
@@ -82,8 +87,8 @@ class Testimony:
         Since when it has repeated itself to the bit [s].
     lies : int
         How often it was silenced.
-    surprises, surprised : int, float
-        Surprising readings in a row, and since when [s].
+    surprises, surprised, worst : int, float, float
+        Surprising readings in a row, since when [s], and the largest z' S^-1 z of them.
     logged : ndarray
         Its last reading.
     past : Increments
@@ -97,6 +102,7 @@ class Testimony:
     lies: int = 0
     surprises: int = 0
     surprised: float = math.inf
+    worst: float = 0.0
     logged: Array = field(default_factory=lambda: np.zeros(0))
     past: Increments = field(default_factory=lambda: Increments(0))
 
@@ -126,8 +132,8 @@ class Testimony:
         slack : Slack
             Left to the filter.
         denied, contradicted : bool
-            Whether others are with the filter, so that what it says is not believed however long it insists:
-            while it is heard, and once it was silenced.
+            Whether others are with the filter: one that is heard and insists is then silenced, not believed;
+            one that was silenced is not believed however long it insists.
         accused : bool
             Whether it tells the story of a channel that lied.
 
@@ -167,14 +173,20 @@ class Testimony:
 
     def _insists(self, said: Said, denied: bool) -> Ruling:
         """Whether a channel that is heard has surprised the filter for too long to be an accident."""
-        if said.fits or denied or self.surprised == math.inf:
-            self.surprises, self.surprised = 0, said.time
+        if said.fits or self.surprised == math.inf:
+            self.surprises, self.surprised, self.worst = 0, said.time, 0.0
             return "use"
-        self.surprises += 1
+        self.surprises, self.worst = self.surprises + 1, max(self.worst, said.nis)
         patience = INSISTS * (1.0 + KNOWN * min(self.lies, 5))
         if self.surprises < OFTEN or said.time - self.surprised < patience:
             return "use"
-        self.surprises, self.surprised = 0, said.time
+        if said.nis < WANES * self.worst:  # a receiver's mistake passes, a filter's does not by itself
+            return "use"
+        self.surprises, self.surprised, self.worst = 0, said.time, 0.0
+        if denied:
+            self.silent = self.follows = said.time
+            self.lies += 1
+            return "silence"
         return "believe"
 
     def _again(self, said: Said, contradicted: bool) -> Ruling:

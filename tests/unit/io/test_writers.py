@@ -42,7 +42,7 @@ def solution(circle):
 COLUMNS = [
     *("time", "lat", "lon", "height", "v_north", "v_east", "v_down", "roll", "pitch", "heading"),
     *("sd_north", "sd_east", "sd_down", "sd_v_north", "sd_v_east", "sd_v_down"),
-    *("sd_roll", "sd_pitch", "sd_heading", "source"),
+    *("sd_roll", "sd_pitch", "sd_heading", "cov_north_east", "source"),
 ]
 
 

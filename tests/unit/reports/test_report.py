@@ -16,7 +16,7 @@ from gapless.reports.page import asset
 from gapless.reports.payload import payload
 from gapless.reports.report import page
 from gapless.trip.recording import Note
-from gapless.trip.solution import Decision
+from gapless.trip.solution import Decision, Notice
 
 SVG_NAMESPACE = "http://www.w3.org/2000/svg"
 """A name, not an address: nothing is fetched from it."""
@@ -215,3 +215,17 @@ def test_a_solution_that_knows_hardly_anything_still_makes_a_page():
     bare = replace(solution, trajectory=bare, states={}, states_sd={}, innovations={}, decisions=(), notes=())
     data = json.loads(Page(page(bare, recording, score(bare, recording))).data)
     assert data["track"]["ellipses"] == []
+
+
+def test_what_was_noticed_heads_the_page(drive, html):
+    recording, solution, scores = drive
+    notice = Notice(300.0, 343.0, "position", f"position {HOSTILE} not believed", "silenced")
+    text = page(replace(solution, notices=(notice,), verdict=f"Disturbed: {HOSTILE}."), recording, scores)
+    words = " ".join(Page(text).words)
+    assert words.index("Disturbed: ") < words.index("fused by the system")
+    assert (
+        words.index("Noticed on the way") < words.index(notice.text) < words.index("Noticed in the recording")
+    )
+    assert text.count("</script>") == 3
+    assert 'class="verdict"' not in html
+    assert "Noticed on the way" not in html

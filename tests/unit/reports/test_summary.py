@@ -8,7 +8,7 @@ from scipy import stats
 from gapless import __version__
 from gapless.reports import summarise, summary_lines
 from gapless.reports.summary import channel_statistics, decision_value
-from gapless.trip.solution import Decision, Innovations
+from gapless.trip.solution import Decision, Innovations, Notice
 
 
 @pytest.fixture(scope="module")
@@ -111,3 +111,30 @@ def test_decision_values_read_well():
     assert decision_value(Decision("a", (1.0, -2.5), "deg", "data", "")) == "1, \u22122.5\u00a0deg"
     assert decision_value(Decision("a", -0.094, "s", "data", "", 0.02)) == "\u22120.094 ± 0.020\u00a0s"
     assert decision_value(Decision("a", "on", "", "user", "")) == "on"
+
+
+NOTICE = Notice(
+    300.0, 343.0, "position", "position not believed from 300 to 343 s: it lay 22 m aside", "silenced"
+)
+
+
+def test_a_verdict_stands_first(drive):
+    told = summarise(replace(drive[1], notices=(NOTICE,), verdict="Disturbed: <position> was not believed."))
+    assert list(told)[3:5] == ["verdict", "notices"]
+    assert told["notices"][0]["text"] == NOTICE.text
+    lines = summary_lines(told)
+    assert lines[1] == told["verdict"]
+    way, notes = lines.index("Noticed on the way"), lines.index("Noticed in the recording")
+    assert way < notes
+    assert NOTICE.text in " ".join(line.strip() for line in lines[way:notes])
+    assert summary_lines(told, head=False)[:2] == [told["verdict"], ""]
+
+
+def test_where_nothing_was_noticed_nothing_is_said(drive):
+    told = summarise(drive[1])
+    assert (told["verdict"], told["notices"]) == ("", [])
+    lines = summary_lines(told)
+    assert lines[1].endswith("km")
+    assert "Noticed on the way" not in lines
+    old = {key: value for key, value in told.items() if key not in ("verdict", "notices")}
+    assert summary_lines(old) == lines  # of a run before there were notices

@@ -19,14 +19,14 @@ PATIENCE, RATE, SD = 30.0, 5.0, 1.0
 SLACK = Slack(0.5)
 
 
-def said(time, off=0.0, fits=True, logged=None, rests=False):
+def said(time, off=0.0, fits=True, logged=None, rests=False, nis=1e3):
     """Of a car that stands for the inertial sensors: what it says is how far off it is.
 
     The last digits of what is logged are noise, so that no two are the same.
     """
     value = np.full(2, off, float)
     own = value + 1e-3 * np.sin(1e3 * time) if logged is None else np.full(2, logged, float)
-    return Said(time, own, value, value, np.full(2, SD**2), fits, rests)
+    return Said(time, own, value, value, np.full(2, SD**2), fits, 1.0 if fits else nis, rests)
 
 
 def hears(channel, readings, slack=SLACK, denied=False, contradicted=False, accused=False):
@@ -118,6 +118,12 @@ def test_what_insists_is_believed():
     ruled = hears(channel, (said(t, fits=False) for t in times(5.0, 12.0)))
     assert ruled.index("believe") == pytest.approx(INSISTS * RATE, abs=1)
     assert "silence" not in ruled
+
+
+def test_a_surprise_that_wanes_is_a_mistake_that_passes():
+    """To less than `WANES` of its largest, by the time that patience is over."""
+    ruled = hears(settled(), (said(t, fits=False, nis=1e3 * np.exp(5.0 - t)) for t in times(5.0, 12.0)))
+    assert set(ruled) == {"use"}
 
 
 def test_one_that_fits_in_between_breaks_it():

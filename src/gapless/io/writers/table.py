@@ -62,12 +62,13 @@ def solution_columns(solution: Solution) -> dict[str, Array]:
     dict of str to ndarray, shape (n,)
         Those of `trajectory_columns`, then one standard deviation of each: `sd_north`, `sd_east`,
         `sd_down` [m], `sd_v_north`, `sd_v_east`, `sd_v_down` [m/s], `sd_roll`, `sd_pitch`,
-        `sd_heading` [deg].
+        `sd_heading` [deg]; then `cov_north_east` [m^2], without which two deviations are no ellipse.
     """
     columns = trajectory_columns(solution.trajectory)
     scale = np.repeat([1.0, 1.0, 1.0 / DEG], 3)
     for name, column in zip(SD_COLUMNS, (solution.trajectory.sd * scale).T, strict=True):
         columns[name] = np.ascontiguousarray(column)
+    columns["cov_north_east"] = np.ascontiguousarray(solution.trajectory.horizontal)
     return columns
 
 
