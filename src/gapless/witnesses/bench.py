@@ -71,7 +71,7 @@ class Bench:
     origin: Array | None = None
     turned: float = 0.0
     moved: float = -math.inf
-    strayed: bool = False
+    stood: float = math.inf
     rested: tuple[float, float, Array, int] = field(default_factory=lambda: (0.0, -math.inf, np.zeros(3), 0))
     askew: Askew = field(default_factory=Askew)
     story: Story = field(default_factory=Story)
@@ -106,13 +106,7 @@ class Bench:
         raw = self._metres(reading) if channel == "position" else reading.value[part]
         var = o.R.diagonal()[part]
         self._tell(channel, reading.time, raw, float(np.sqrt(var[:2].max())))
-<<<<<<< HEAD
-        said = Said(reading.time, reading.value, raw, value, var, fits, self._rests(reading, belief))
-        if channel == "position":  # what drifts off while the car stands is the receiver, until it fits
-            self.strayed = not fits and (self.strayed or reading.time - self.rested[1] < APART)
-=======
         said = Said(reading.time, reading.value, raw, value, var, fits, nis, self._rests(reading, belief))
->>>>>>> main
         ruling = mine.hear(said, self._slack(channel, belief), *self._against(channel, reading.time))
         if channel == "velocity":
             ruling = self._turned(said, ruling)
@@ -264,7 +258,12 @@ class Bench:
         if channel == "position":
             speed = self.channels.get("velocity")
             lied = speed is not None and time - speed.silent > ACCUSED and not speed.following(time)
-            return self.strayed, False, lied and time - self.story.since > ACCUSED
+            stands = time - self.rested[1] < APART  # what drifts while the car stands is the receiver
+            return (
+                stands or self._believed("velocity", time),
+                False,
+                lied and time - self.story.since > ACCUSED,
+            )
         place = self.channels.get("position")
         if channel == "velocity" and place is not None and not place.following(time):
             return True, True, False  # one receiver: it does not know its speed while its place stands about

@@ -89,9 +89,7 @@ def test_what_was_led_astray_meanwhile_has_a_short_way_back():
 def test_what_repeats_itself_is_never_believed(fits):
     """The same bits while something else was felt: neither after any patience, nor where it fits."""
     channel = settled()
-    felt = (
-        Said(t, np.ones(2), np.zeros(2), np.full(2, -8.0 * t), np.ones(2), False) for t in times(5.0, 8.0)
-    )
+    felt = (said(t, -8.0 * (t - 5.0), False, logged=1.0) for t in times(5.0, 8.0))
     assert "silence" in hears(channel, felt)
     ruled = hears(channel, (said(t, -24.0, fits, logged=1.0) for t in times(8.0, 150.0)))
     assert set(ruled) == {"silence"}
@@ -132,9 +130,16 @@ def test_one_that_fits_in_between_breaks_it():
     assert set(ruled) == {"use"}
 
 
-def test_what_is_denied_may_insist_in_vain():
-    ruled = hears(settled(), (said(t, fits=False) for t in times(5.0, 40.0)), denied=True)
-    assert set(ruled) == {"use"}
+def test_what_is_denied_and_insists_is_silenced_until_patience_is_over():
+    """Which it is not while others contradict it."""
+    for contradicted, after in ((False, "believe"), (True, "silence")):
+        readings = (said(t, fits=False) for t in times(5.0, 6.0 + INSISTS + PATIENCE))
+        ruled = hears(settled(), readings, denied=True, contradicted=contradicted)
+        silent = ruled.index("silence")
+        assert silent == pytest.approx(INSISTS * RATE, abs=1)
+        assert set(ruled[:silent]) == {"use"}
+        assert set(ruled[silent : silent + int(PATIENCE * RATE) - 1]) == {"silence"}
+        assert after in ruled[silent + int(PATIENCE * RATE) - 1 :]
 
 
 @pytest.mark.parametrize("lies", [1, 2])
