@@ -89,9 +89,9 @@ def test_what_was_led_astray_meanwhile_has_a_short_way_back():
 def test_what_repeats_itself_is_never_believed(fits):
     """The same bits while something else was felt: neither after any patience, nor where it fits."""
     channel = settled()
-    felt = (said(t, -8.0 * (t - 5.0), False, logged=1.0) for t in times(5.0, 8.0))
+    felt = (said(t, -8.0 * (t - 5.0), False, logged=1.0) for t in times(5.0, 10.0))
     assert "silence" in hears(channel, felt)
-    ruled = hears(channel, (said(t, -24.0, fits, logged=1.0) for t in times(8.0, 150.0)))
+    ruled = hears(channel, (said(t, -40.0, fits, logged=1.0) for t in times(10.0, 150.0)))
     assert set(ruled) == {"silence"}
 
 
