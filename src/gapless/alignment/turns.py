@@ -20,6 +20,10 @@ REACH: Final = 30.0
 _STEP: Final = 0.25
 _HALF: Final = 1.0
 """Turns are compared over twice this [s]."""
+_SHARP: Final = 1.0
+"""A course that turns by more within the window is a spike's, not a car's [rad]."""
+_SPIKE: Final = 15.0
+"""A velocity that is off the median of five by more is no car's [m/s]."""
 _ENOUGH: Final = 60
 """Turns, a second apart, below which nothing is concluded."""
 _ALONE: Final = 2.0
@@ -79,14 +83,25 @@ def turns(imu: Imu, gnss: Gnss, reach: float = REACH, least: float = 0.0) -> Tur
     offsets, explained = np.arange(-reach, reach + 0.5 * _STEP, _STEP), list[float]()
     if not len(imu):
         return Turns(offsets, np.zeros(len(offsets)))
-    drove, angle = steered(gnss, _HALF), Sums.of(imu, imu.dtheta)
-    turned = drove.turned
-    for at in (drove.time + s for s in offsets):
+    drove, angle = steered(_sound(gnss), _HALF), Sums.of(imu, imu.dtheta)
+    slow = np.abs(drove.turned) < _SHARP
+    turned, time = drove.turned[slow], drove.time[slow]
+    for at in (time + s for s in offsets):
         there = (at - _HALF > angle.time[0]) & (at + _HALF < angle.time[-1])
         there &= (np.abs(turned[there]) > _TURNING).sum() >= least
         felt = angle.around(at[there], _HALF)
         explained.append(_explained(felt, turned[there]) if there.sum() >= _ENOUGH else 0.0)
     return Turns(offsets, np.array(explained), _turning(turned, angle))
+
+
+def _sound(gnss: Gnss) -> Gnss:
+    """Fixes without those whose velocity no car has between its neighbours': a spike turns nothing."""
+    v = gnss.v_n[:, :2]
+    if len(v) < 5 or not np.isfinite(v).all():
+        return gnss
+    padded = np.pad(v, ((2, 2), (0, 0)), mode="edge")
+    near = np.median(np.stack([padded[k : k + len(v)] for k in range(5)]), axis=0)
+    return gnss.take(np.hypot(*(v - near).T) < _SPIKE)
 
 
 def _turning(turned: Array, angle: Sums) -> float:

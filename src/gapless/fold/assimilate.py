@@ -75,12 +75,12 @@ def assimilate(
     if reading is not None:
         ruling = _heard(state, settings, reading, o, nis, journal)
     elif channel == "zero_velocity":
-        drift = state.bench.drifts(time, o.z[3:], b)
+        drift = state.hearing.drifts(time, o.z[3:], b)
         if drift is not None:
             b.drift(drift)
             journal.moved(time, "gyro", float(np.linalg.norm(drift)))
             nis, s, hp = assess(b.p, ROW, n, o.z, o.H, o.R)
-    elif channel == "nonholonomic" and state.bench.in_vain(channel, time, nis <= soft_bound(o.z.size)):
+    elif channel == "nonholonomic" and state.hearing.in_vain(channel, time, nis <= soft_bound(o.z.size)):
         journal.knock(time, b.remount(o.z))
         nis, s, hp = assess(b.p, ROW, n, o.z, o.H, o.R)
     if ruling == "turn":
@@ -123,7 +123,7 @@ def assimilate(
         if o.slow is not None:
             state.wander.hear(time, seen, r, o.slow)
         state.stamps.hear(time, seen.ravel(), len(seen), r, b.v_n, settings.doubt.lasting)
-    state.bench.corrected = state.bench.corrected + dx
+    state.hearing.corrected = state.hearing.corrected + dx
     if b.error.size:
         b.error[:n] += dx
     else:
@@ -137,9 +137,9 @@ def _heard(
 ) -> Ruling:
     """What witnesses rule; a channel that falls silent, or is heard again, is written down."""
     bound = soft_bound(o.z.size)
-    ruling = state.bench.hear(reading, o, nis, bound, state.belief)
+    ruling = state.hearing.hear(reading, o, nis, bound, state.belief)
     journal.heard(reading.channel, reading.time, ruling)
-    if state.bench.beside_the_road(reading.time):
+    if state.hearing.beside_the_road(reading.time):
         _lose(state, settings)
         return "believe"
     return ruling
@@ -147,7 +147,7 @@ def _heard(
 
 def _turn(state: State, z: Array, journal: Journal, time: float) -> None:
     """Put right what is askew: the box, where the car points along its course, or else the heading."""
-    b, angle = state.belief, state.bench.turned
+    b, angle = state.belief, state.hearing.turned
     v, c = b.v_n[:2] + z[:2], b.C_nb
     yaw = float(b.block("mounting")[1]) if "mounting" in b.layout else 0.0
     ahead = math.atan2(c[1, 0], c[0, 0]) + yaw
@@ -155,7 +155,7 @@ def _turn(state: State, z: Array, journal: Journal, time: float) -> None:
         turn = about(c[2], angle)
         state.box = turn if state.box is None else turn @ state.box
         journal.knock(time, angle)
-        state.bench.moved = time
+        state.hearing.moved = time
         angle = 0.0
     else:
         journal.moved(time, "heading", angle)

@@ -33,7 +33,7 @@ def begin(start: Start, state: State, settings: Settings, journal: Journal, tape
     b, sd = state.belief, settings.initial_sd
     b.x[:3], b.x[3:6], b.x[6:10] = start.lla, start.v_n, start.q_nb
     b.error[:9] = 0.0
-    state.bench.forget()
+    state.hearing.forget()
     first = state.lost or not state.aligned
     if first:
         _first(start, state, settings)

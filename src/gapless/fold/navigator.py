@@ -28,7 +28,7 @@ from gapless.inertial.unseen import stray, tilt
 from gapless.measurements.base import Observation
 from gapless.trip.events import EPS, GAP, Event, ImuBlock, Motion, Reading
 from gapless.trip.recording import Array
-from gapless.witnesses.bench import Bench
+from gapless.witnesses.hearing import Hearing
 from gapless.witnesses.jolt import Jolt
 
 STILL = 1.0
@@ -94,9 +94,9 @@ class Navigator:
         rules = {kind: rule.copy() for kind, rule in settings.adaptation.items()}
         aligner = settings.aligner.copy()
         manner = settings.manner
-        bench = Bench(np.zeros(settings.layout.n))
+        hearing = Hearing(np.zeros(settings.layout.n))
         self._state = State(
-            belief, rules, constraints, bridges, aligner, wander, StampDoubt(), manner.noise, manner, bench
+            belief, rules, constraints, bridges, aligner, wander, StampDoubt(), manner.noise, manner, hearing
         )
         self._past = Past(settings.lateness)
         self._propagate = propagate_points if settings.cubature else at.propagate
@@ -270,13 +270,13 @@ class Navigator:
         observation = sensor.observe(belief, reading)
         if reading.channel == "position":
             return observation._replace(
-                R=observation.R * self._state.bench.resting(reading.time, self._rests)
+                R=observation.R * self._state.hearing.resting(reading.time, self._rests)
             )
         if reading.channel != "odometer":
             return observation
         back, h = sensor.observe(belief, reading._replace(value=-reading.value)), observation.H
         hph = float((h @ belief.P @ h.T)[0, 0])
-        return self._state.bench.sign.settles(float(reading.value[0]), observation, back, hph)
+        return self._state.hearing.sign.settles(float(reading.value[0]), observation, back, hph)
 
     @property
     def _rests(self) -> bool:
@@ -386,7 +386,7 @@ class Navigator:
         state = self._state
         while state.pending and state.pending[0].time <= begin:
             state.pending.pop(0)
-        state.bench.forget()
+        state.hearing.forget()
         state.aligner = self.settings.aligner.copy()
         if state.aligned:
             state.lose_track(begin)
@@ -407,7 +407,7 @@ class Navigator:
         tilt = math.sqrt(max(0.5 * float(state.belief.p[6 * ROW + 6] + state.belief.p[7 * ROW + 7]), 0.0))
         c = state.belief.C_nb
         turning = np.cross(motion.rate, c.T @ state.belief.v_n)  # a corner leans on the box, no blow does
-        jolt = state.bench.jolts.feel(motion.force - turning, c, tilt, dt)
+        jolt = state.hearing.jolts.feel(motion.force - turning, c, tilt, dt)
         if jolt is not None and not state.lost:  # else it is the attitude that leans
             self._knocked(jolt)
         for name, constraint in state.constraints.items():
@@ -433,8 +433,8 @@ class Navigator:
         state = self._state
         state.box = jolt.turn if state.box is None else jolt.turn @ state.box
         state.belief.knocked(jolt.turn, jolt.since, jolt.gained, self.settings.ceiling)
-        state.bench.forget()
-        state.bench.moved = state.clock
+        state.hearing.forget()
+        state.hearing.moved = state.clock
         for bridge in state.bridges:
             bridge.lost()
         self.journal.knock(state.clock - jolt.since, jolt.angle)
@@ -449,7 +449,7 @@ class Navigator:
             if self.settings.arm_doubt.any():
                 c = state.belief.C_nb
                 shared = shared + c @ self.settings.arm_doubt @ c.T
-            off = state.bench.offset
+            off = state.hearing.offset
             if off.any():  # fixes that moved away and stay there: nobody knows yet which place is right
                 shared = shared + np.outer(off, off) / HOLDS
             if source != "gnss" and state.manner.scale != 1.0:

@@ -21,7 +21,7 @@ from gapless.inertial.unseen import UNKNOWN, Turned, lose_track, turn, turned_ab
 from gapless.measurements.base import Constraint, Observation
 from gapless.trip.events import Event, ImuBlock, Reading
 from gapless.trip.recording import Array
-from gapless.witnesses.bench import Bench
+from gapless.witnesses.hearing import Hearing
 
 LASTS: Final = 1.6
 """A fix or a bridge's word holds for so long [s]: a second, and what a receiver at 1 Hz may be late."""
@@ -54,7 +54,7 @@ class State:
         Process noise, as an adaptation left it; never changed in place.
     manner : Manner
         As rehearsals advise.
-    bench : Bench
+    hearing : Hearing
         Who of the channels is heard.
     pending : list of Reading
         Readings that hold for a time still to come, in its order.
@@ -93,7 +93,7 @@ class State:
     stamps: StampDoubt
     noise: Array
     manner: Manner
-    bench: Bench
+    hearing: Hearing
     pending: list[Reading] = field(default_factory=list)
     heard: dict[str, float] = field(default_factory=dict)
     agreed: dict[str, float] = field(default_factory=dict)
@@ -183,7 +183,7 @@ class State:
             self.stamps.copy(),
             self.noise,
             self.manner,
-            self.bench.copy(),
+            self.hearing.copy(),
             list(self.pending),
             dict(self.heard),
             dict(self.agreed),

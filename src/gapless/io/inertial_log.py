@@ -29,6 +29,8 @@ _BUSY_GYRO: Final = 3.5
 drive with turns exceeds it (the seven test drives: 13 to 31 deg/s)."""
 _GRAVITY_BAND: Final = (7.0, 12.5)
 """Where the median specific force [m/s^2] of any vehicle lies, biases of 1 m/s^2 included."""
+_UNSTEADY: Final = 0.6
+"""Gravity is steady: a force that scatters (16 to 84 %) by more of its size has none in it."""
 _SAMPLES: Final = 20_000
 """Rows, evenly spread, that the units are judged by."""
 _STUCK: Final = 1000
@@ -175,13 +177,19 @@ def _check_time_unit(log: Log) -> None:
 
 def _check_units(log: Log, gyro: Array, accel: Array) -> None:
     some = slice(None, None, 1 + len(gyro) // _SAMPLES)
-    force = float(np.median(np.linalg.norm(accel[some], axis=1)))
+    norms = np.linalg.norm(accel[some], axis=1)
+    force = float(np.median(norms))
     turn = np.linalg.norm(gyro[some], axis=1)
     low, high = _GRAVITY_BAND
     if not low <= force <= high:
         what = f"the median specific force is {force:.4g} m/s^2, not about 9.8"
         if low <= float(np.median(turn)) <= high:
             log.refuse(what + ", but the gyro's norm is", "exchange the gyro and accelerometer columns")
+        if force < low and float(np.subtract(*np.percentile(norms, [84, 16]))) > _UNSTEADY * force:
+            log.refuse(
+                f"{what}, and changes as much: it looks like acceleration without gravity",
+                "log specific force, with gravity in it",
+            )
         increments = 1.0 / nominal_interval(log["time"])
         for unit, factor in (("g", 9.80665), ("milli-g", 9.80665e-3), ("increments", increments)):
             if low <= force * factor <= high:

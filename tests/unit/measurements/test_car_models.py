@@ -28,11 +28,11 @@ def motion(time, turn=0.0):
     return Motion(time, 0.1, np.array([0.0, 0.0, turn, 0.0, 0.0, -9.8]))
 
 
-def test_says_nothing_to_a_car_that_stands_or_backs_up():
+def test_says_nothing_to_a_car_that_stands_and_speaks_to_one_that_backs_up():
     constraint = NonHolonomic(min_speed=1.0)
     assert constraint.tick(driving(0.9), motion(0.0)) is None
-    assert constraint.tick(driving(-5.0), motion(0.0)) is None
     assert constraint.tick(driving(1.1), motion(0.0)) is not None
+    assert constraint.tick(driving(-5.0), motion(1.0)) is not None
 
 
 def test_speaks_no_more_often_than_it_may():

@@ -1,4 +1,4 @@
-"""The witnesses' bench: who is heard, what is said of it, and what is doubted meanwhile."""
+"""The hearing of all witnesses: who is believed, what is said of it, and what is doubted meanwhile."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ RESTS, DRIVES = 0.5, 3.0
 
 
 @dataclass
-class Bench:
+class Hearing:
     """The testimonies of all channels.
 
     Parameters
