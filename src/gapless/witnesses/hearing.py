@@ -36,6 +36,8 @@ SOON, SETTLES = 3.0, 30.0
 """So soon within this after the box was found to have moved [s]."""
 ZERO: Final = 0.1 * DEG
 """A gyro's zero that is off by so much has moved [rad/s]."""
+LATELY: Final = 5.0
+"""What a receiver drifted off by while the car stood shows so soon after it drives off [s]."""
 APART: Final = 1.0
 """Words of rest less apart are of one rest [s]."""
 FITTING: Final = 18.0 * DEG
@@ -71,6 +73,7 @@ class Hearing:
     origin: Array | None = None
     turned: float = 0.0
     moved: float = -math.inf
+    strayed: bool = False
     stood: float = math.inf
     rested: tuple[float, float, Array, int] = field(default_factory=lambda: (0.0, -math.inf, np.zeros(3), 0))
     askew: Askew = field(default_factory=Askew)
@@ -107,6 +110,8 @@ class Hearing:
         var = o.R.diagonal()[part]
         self._tell(channel, reading.time, raw, float(np.sqrt(var[:2].max())))
         said = Said(reading.time, reading.value, raw, value, var, fits, nis, self._rests(reading, belief))
+        if channel == "position":  # what drifts off while the car stands is the receiver, until it fits
+            self.strayed = not fits and (self.strayed or reading.time - self.rested[1] < LATELY)
         ruling = mine.hear(said, self._slack(channel, belief), *self._against(channel, reading.time))
         if channel == "velocity":
             ruling = self._turned(said, ruling)
@@ -258,12 +263,7 @@ class Hearing:
         if channel == "position":
             speed = self.channels.get("velocity")
             lied = speed is not None and time - speed.silent > ACCUSED and not speed.following(time)
-            stands = time - self.rested[1] < APART  # what drifts while the car stands is the receiver
-            return (
-                stands or self._believed("velocity", time),
-                False,
-                lied and time - self.story.since > ACCUSED,
-            )
+            return self.strayed, False, lied and time - self.story.since > ACCUSED
         place = self.channels.get("position")
         if channel == "velocity" and place is not None and not place.following(time):
             return True, True, False  # one receiver: it does not know its speed while its place stands about

@@ -19,14 +19,14 @@ PATIENCE, RATE, SD = 30.0, 5.0, 1.0
 SLACK = Slack(0.5)
 
 
-def said(time, off=0.0, fits=True, logged=None, rests=False):
+def said(time, off=0.0, fits=True, logged=None, rests=False, nis=1e3):
     """Of a car that stands for the inertial sensors: what it says is how far off it is.
 
     The last digits of what is logged are noise, so that no two are the same.
     """
     value = np.full(2, off, float)
     own = value + 1e-3 * np.sin(1e3 * time) if logged is None else np.full(2, logged, float)
-    return Said(time, own, value, value, np.full(2, SD**2), fits, rests)
+    return Said(time, own, value, value, np.full(2, SD**2), fits, 1.0 if fits else nis, rests)
 
 
 def hears(channel, readings, slack=SLACK, denied=False, contradicted=False, accused=False):
@@ -89,11 +89,9 @@ def test_what_was_led_astray_meanwhile_has_a_short_way_back():
 def test_what_repeats_itself_is_never_believed(fits):
     """The same bits while something else was felt: neither after any patience, nor where it fits."""
     channel = settled()
-    felt = (
-        Said(t, np.ones(2), np.zeros(2), np.full(2, -8.0 * t), np.ones(2), False) for t in times(5.0, 8.0)
-    )
+    felt = (said(t, -8.0 * (t - 5.0), False, logged=1.0) for t in times(5.0, 10.0))
     assert "silence" in hears(channel, felt)
-    ruled = hears(channel, (said(t, -24.0, fits, logged=1.0) for t in times(8.0, 150.0)))
+    ruled = hears(channel, (said(t, -40.0, fits, logged=1.0) for t in times(10.0, 150.0)))
     assert set(ruled) == {"silence"}
 
 
@@ -120,15 +118,28 @@ def test_what_insists_is_believed():
     assert "silence" not in ruled
 
 
+def test_a_surprise_that_wanes_is_a_mistake_that_passes():
+    """To less than `WANES` of its largest, by the time that patience is over."""
+    ruled = hears(settled(), (said(t, fits=False, nis=1e3 * np.exp(5.0 - t)) for t in times(5.0, 12.0)))
+    assert set(ruled) == {"use"}
+
+
 def test_one_that_fits_in_between_breaks_it():
     channel = settled()
     ruled = hears(channel, (said(t, fits=k % 8 == 0) for k, t in enumerate(times(5.0, 40.0))))
     assert set(ruled) == {"use"}
 
 
-def test_what_is_denied_may_insist_in_vain():
-    ruled = hears(settled(), (said(t, fits=False) for t in times(5.0, 40.0)), denied=True)
-    assert set(ruled) == {"use"}
+def test_what_is_denied_and_insists_is_silenced_until_patience_is_over():
+    """Which it is not while others contradict it."""
+    for contradicted, after in ((False, "believe"), (True, "silence")):
+        readings = (said(t, fits=False) for t in times(5.0, 6.0 + INSISTS + PATIENCE))
+        ruled = hears(settled(), readings, denied=True, contradicted=contradicted)
+        silent = ruled.index("silence")
+        assert silent == pytest.approx(INSISTS * RATE, abs=1)
+        assert set(ruled[:silent]) == {"use"}
+        assert set(ruled[silent : silent + int(PATIENCE * RATE) - 1]) == {"silence"}
+        assert after in ruled[silent + int(PATIENCE * RATE) - 1 :]
 
 
 @pytest.mark.parametrize("lies", [1, 2])
