@@ -31,6 +31,8 @@ _RATIOS: Final = (0.0, 0.3, 1.0, 3.0, 10.0)
 """Deviations of the wandering part over the white one that are tried."""
 _WALKS: Final = (0.0, 0.01, 0.03, 0.1, 0.3, 1.0)
 """Random walks [1/sqrt(s)] over the white deviation that are tried."""
+_SPIKE: Final = 7.0
+"""Deviations (by the median) of a residual against its neighbours' beyond which it is a spike."""
 _SHARES: Final = (0.0, 0.25, 0.5, 0.75, 1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 16.0, 24.0, 32.0)
 """The same, where the random walk is known."""
 _SPIKE: Final = 3.5
@@ -98,6 +100,7 @@ def shift(
         None where there is too little.
     """
     found: Shift | None = None
+    time, value = _sound(curve, time, value, start)
     for _ in range(2):
         blocks = _blocks(curve, time, value, start if found is None else found.value)
         if sum(len(b.time) for b in blocks) < 20:
@@ -129,7 +132,7 @@ def wandering(curve: Curve, time: Array, value: Array, walk: float) -> tuple[flo
     white, wander : float
         Standard deviations in one axis [m], the former of means over a second; NaN where there is too little.
     """
-    blocks = _blocks(curve, time, value, 0.0)
+    blocks = _blocks(curve, *_sound(curve, time, value, 0.0), 0.0)
     if sum(len(b.time) for b in blocks) < 100:
         return np.nan, np.nan
     spare = [np.ones(len(b.time)) for b in blocks]
@@ -142,6 +145,19 @@ def wandering(curve: Curve, time: Array, value: Array, walk: float) -> tuple[flo
     best, ratio = min(found, key=lambda one: one[0].cost)
     scale = float(np.median(best.scales))
     return scale, ratio * scale
+
+
+def _sound(curve: Curve, time: Array, value: Array, offset: float) -> tuple[Array, Array]:
+    """Readings without those whose residual stands off its neighbours': a spike is no news."""
+    if len(time) < 5:
+        return time, value
+    model = [np.interp(time + offset, curve.time, c) for c in curve.value.T]
+    left = value - np.column_stack(model)
+    padded = np.pad(left, ((2, 2), (0, 0)), mode="edge")
+    near = np.median(np.stack([padded[k : k + len(left)] for k in range(5)]), axis=0)
+    off = np.linalg.norm(left - near, axis=1)
+    sound = off <= max(_SPIKE * 1.4826 * float(np.median(off)), 1e-9)
+    return time[sound], value[sound]
 
 
 def _blocks(curve: Curve, time: Array, value: Array, offset: float) -> list[_Block]:
