@@ -31,7 +31,7 @@ _RATIOS: Final = (0.0, 0.3, 1.0, 3.0, 10.0)
 """Deviations of the wandering part over the white one that are tried."""
 _WALKS: Final = (0.0, 0.01, 0.03, 0.1, 0.3, 1.0)
 """Random walks [1/sqrt(s)] over the white deviation that are tried."""
-_SPIKE: Final = 7.0
+_ALONE: Final = 7.0
 """Deviations (by the median) of a residual against its neighbours' beyond which it is a spike."""
 _SHARES: Final = (0.0, 0.25, 0.5, 0.75, 1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 16.0, 24.0, 32.0)
 """The same, where the random walk is known."""
@@ -156,7 +156,7 @@ def _sound(curve: Curve, time: Array, value: Array, offset: float) -> tuple[Arra
     padded = np.pad(left, ((2, 2), (0, 0)), mode="edge")
     near = np.median(np.stack([padded[k : k + len(left)] for k in range(5)]), axis=0)
     off = np.linalg.norm(left - near, axis=1)
-    sound = off <= max(_SPIKE * 1.4826 * float(np.median(off)), 1e-9)
+    sound = off <= max(_ALONE * 1.4826 * float(np.median(off)), 1e-9)
     return time[sound], value[sound]
 
 

@@ -14,6 +14,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any, Final
 
+from click.exceptions import Exit
+
 INTERRUPTED: Final = 130
 """Exit code after Ctrl-C, as shells have it: 128 + SIGINT."""
 UNCHANGED: Final = "interrupted; no file was changed"
@@ -81,6 +83,8 @@ def plainly() -> Iterator[None]:
     """
     try:
         yield
+    except Exit:  # it was answered already
+        raise
     except Exception:
         check()
         raise
