@@ -74,7 +74,10 @@ def watch(state: State, settings: Settings, journal: Journal, motion: Motion) ->
     """
     p, c = state.belief.p, state.belief.C_nb
     tilt = math.sqrt(max(0.5 * float(p[6 * ROW + 6] + p[7 * ROW + 7]), 0.0))
-    turning = np.cross(motion.rate, c.T @ state.belief.v_n)  # a corner leans on the box, no blow does
+    (a, b, d), (x, y, z) = motion.rate.tolist(), (state.belief.v_n @ c).tolist()
+    turning = np.array(
+        [b * z - d * y, d * x - a * z, a * y - b * x]
+    )  # a corner leans on the box, no blow does
     jolt = state.hearing.jolts.feel(motion.force - turning, c, tilt, motion.dt)
     if jolt is not None and not state.lost:  # else it is the attitude that leans
         _knocked(state, settings, journal, jolt)
