@@ -228,7 +228,9 @@ class Hearing:
             1 plus the seconds that it has stood, over `SHARED`: all fixes of a rest together count as a few.
         """
         self.stood = min(self.stood, time) if rests else math.inf
-        return 1.0 + (time - self.stood) / SHARED if rests else 1.0
+        place = self.channels.get("position")
+        silenced = place is not None and not place.heard  # one that was silenced must fit by its own word
+        return 1.0 + (time - self.stood) / SHARED if rests and not silenced else 1.0
 
     def _metres(self, reading: Reading) -> Array:
         """A position in metres from the first one; only differences count."""
