@@ -112,6 +112,21 @@ def offset(
     return _best(shifts, np.array(misfits), np.array(counts, float), share)
 
 
+def neighbours(value: Array) -> Array:
+    """The median of each reading and the two to either side.
+
+    Parameters
+    ----------
+    value : ndarray, shape (k, d)
+
+    Returns
+    -------
+    ndarray, shape (k, d)
+    """
+    padded = np.pad(value, ((2, 2), (0, 0)), mode="edge")
+    return np.asarray(np.median(np.stack([padded[i : i + len(value)] for i in range(5)]), axis=0))
+
+
 def without_spikes(time: Array, value: Array) -> tuple[Array, Array]:
     """Readings without those that stand far off their neighbours.
 
@@ -128,9 +143,7 @@ def without_spikes(time: Array, value: Array) -> tuple[Array, Array]:
     """
     if len(time) < 5:
         return time, value
-    padded = np.pad(value, ((2, 2), (0, 0)), mode="edge")
-    near = np.median(np.stack([padded[i : i + len(value)] for i in range(5)]), axis=0)
-    off = np.abs(value - near)
+    off = np.abs(value - neighbours(value))
     limit = np.maximum(10.0 * 1.4826 * np.median(off, axis=0), 10.0)
     sound = (off <= limit).all(axis=1)
     return time[sound], value[sound]

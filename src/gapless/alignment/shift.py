@@ -12,7 +12,7 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from gapless.alignment.clock import Curve
+from gapless.alignment.clock import Curve, neighbours
 from gapless.filters.whiten import whiten
 from gapless.trip.recording import Array
 
@@ -153,9 +153,7 @@ def _sound(curve: Curve, time: Array, value: Array, offset: float) -> tuple[Arra
         return time, value
     model = [np.interp(time + offset, curve.time, c) for c in curve.value.T]
     left = value - np.column_stack(model)
-    padded = np.pad(left, ((2, 2), (0, 0)), mode="edge")
-    near = np.median(np.stack([padded[k : k + len(left)] for k in range(5)]), axis=0)
-    off = np.linalg.norm(left - near, axis=1)
+    off = np.linalg.norm(left - neighbours(left), axis=1)
     sound = off <= max(_ALONE * 1.4826 * float(np.median(off)), 1e-9)
     return time[sound], value[sound]
 

@@ -11,6 +11,7 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
+from gapless.alignment.clock import neighbours
 from gapless.trip.motion import Sums
 from gapless.trip.recording import Array, Gnss, Imu
 from gapless.trip.steering import steered
@@ -99,9 +100,7 @@ def _sound(gnss: Gnss) -> Gnss:
     v = gnss.v_n[:, :2]
     if len(v) < 5 or not np.isfinite(v).all():
         return gnss
-    padded = np.pad(v, ((2, 2), (0, 0)), mode="edge")
-    near = np.median(np.stack([padded[k : k + len(v)] for k in range(5)]), axis=0)
-    return gnss.take(np.hypot(*(v - near).T) < _SPIKE)
+    return gnss.take(np.hypot(*(v - neighbours(v)).T) < _SPIKE)
 
 
 def _turning(turned: Array, angle: Sums) -> float:
