@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from gapless._numba import inline
+from gapless._numba import inline, kernel
 
 Array = NDArray[np.float64]
 Four = tuple[Any, Any, Any, Any]
@@ -116,6 +116,25 @@ def to_matrix(q: ArrayLike) -> Array:
     """
     rows = np.stack(matrix_rows(_split(q)), axis=-1)
     return rows.reshape(*rows.shape[:-1], 3, 3)
+
+
+@kernel
+def matrix(q: Array) -> Array:
+    """Direction cosine matrix of one unit quaternion.
+
+    Parameters
+    ----------
+    q : ndarray, shape (4,)
+
+    Returns
+    -------
+    ndarray, shape (3, 3)
+    """
+    c = np.empty((3, 3))
+    (c[0, 0], c[0, 1], c[0, 2], c[1, 0], c[1, 1], c[1, 2], c[2, 0], c[2, 1], c[2, 2]) = matrix_rows(
+        (q[0], q[1], q[2], q[3])
+    )
+    return c
 
 
 def from_rotation_vector(r: ArrayLike) -> Array:

@@ -104,6 +104,31 @@ def lean(
     return new, turned
 
 
+@kernel
+def swung(constant: Array, moved: Array, common: float, apart: float, wobble: float) -> Array:
+    """Covariance of a position for stamps in doubt.
+
+    Parameters
+    ----------
+    constant : ndarray, shape (2, 3)
+    moved : ndarray, shape (4, 3)
+        As of `lean`.
+    common, apart, wobble : float
+        As of `Doubt` [s].
+
+    Returns
+    -------
+    ndarray, shape (3, 3)
+        [m^2]
+    """
+    total = np.empty((3, 3))
+    for i in range(3):
+        for j in range(3):
+            total[i, j] = common**2 * constant[0, i] * constant[0, j] + wobble**2 * moved[i, j]
+            total[i, j] += apart**2 * constant[1, i] * constant[1, j]
+    return total
+
+
 @dataclass
 class StampDoubt:
     """Response of the position to stamps that are off.
@@ -157,8 +182,7 @@ class StampDoubt:
         ndarray, shape (3, 3)
             [m^2]
         """
-        g = self.constant * np.array([[doubt.common], [doubt.apart]])
-        return np.asarray(g.T @ g + doubt.wobble**2 * self.moved[:3])
+        return swung(self.constant, self.moved, doubt.common, doubt.apart, doubt.wobble)
 
     def copy(self) -> Self:
         """An independent copy (arrays are never changed in place).

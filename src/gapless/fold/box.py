@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
 from gapless.fold.journal import Journal
@@ -13,7 +11,7 @@ from gapless.inertial import propagate as at
 from gapless.inertial.layout import ROW
 from gapless.trip.events import ImuBlock, Motion
 from gapless.trip.recording import Array
-from gapless.witnesses.jolt import Jolt
+from gapless.witnesses.jolt import Jolt, upright
 
 
 def in_box(block: ImuBlock, box: Array | None) -> ImuBlock:
@@ -72,13 +70,9 @@ def watch(state: State, settings: Settings, journal: Journal, motion: Motion) ->
     motion : Motion
         Of the tick that ends now.
     """
-    p, c = state.belief.p, state.belief.C_nb
-    tilt = math.sqrt(max(0.5 * float(p[6 * ROW + 6] + p[7 * ROW + 7]), 0.0))
-    (a, b, d), (x, y, z) = motion.rate.tolist(), (state.belief.v_n @ c).tolist()
-    turning = np.array(
-        [b * z - d * y, d * x - a * z, a * y - b * x]
-    )  # a corner leans on the box, no blow does
-    jolt = state.hearing.jolts.feel(motion.force - turning, c, tilt, motion.dt)
+    b = state.belief
+    tilt, c, force = upright(b.p, ROW, b.x, motion.rate, motion.force)
+    jolt = state.hearing.jolts.feel(force, c, tilt, motion.dt)
     if jolt is not None and not state.lost:  # else it is the attitude that leans
         _knocked(state, settings, journal, jolt)
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from bisect import bisect_left
 from collections.abc import Iterator, Mapping, Sequence
+from itertools import groupby
 from operator import itemgetter
 
 import numpy as np
@@ -11,6 +12,8 @@ import numpy as np
 from gapless.trip.events import EPS, Event, ImuBlock, Reading
 from gapless.trip.recording import Array, Gnss, Imu, Recording
 
+AHEAD = 5.0
+"""Readings of so many seconds are laid out at once where all is known [s]: samples run on in one go."""
 Arrival = tuple[float, tuple[Reading, ...]]
 """When readings arrive, and which."""
 
@@ -67,7 +70,7 @@ def events(
     yield from merged(recording.imu, _arrivals(recording, offsets, thin, start, end), start, end)
 
 
-def in_order(recording: Recording, offsets: Mapping[str, float]) -> list[Arrival]:
+def in_order(recording: Recording, offsets: Mapping[str, float], thin: float = 0.0) -> list[Arrival]:
     """Readings by the time that they hold for: what only looking back can have.
 
     Parameters
@@ -75,14 +78,21 @@ def in_order(recording: Recording, offsets: Mapping[str, float]) -> list[Arrival
     recording : Recording
     offsets : mapping of str to float
         As for `events`.
+    thin : float
+        Least time between the GNSS epochs that are used [s].
 
     Returns
     -------
-    list of (float, (Reading,))
-        For `merged`. None comes after a sample that ends later than it holds, by a rounding error even.
+    list of (float, tuple of Reading)
+        For `merged`: those of some seconds at once, ahead of their samples. None comes after a sample that
+        ends later than it holds, by a rounding error even.
     """
-    readings = [r for _, together in _arrivals(recording, offsets, 0.0, -np.inf, np.inf) for r in together]
-    return [(r.time - 2.0 * EPS, (r,)) for r in sorted(readings, key=lambda r: r.time)]
+    found = _arrivals(recording, offsets, thin, -np.inf, np.inf)
+    readings = sorted((r for _, together in found for r in together), key=lambda r: r.time)
+    return [
+        ((few := tuple(together))[0].time - 2.0 * EPS, few)
+        for _, together in groupby(readings, lambda r: r.time // AHEAD)
+    ]
 
 
 def merged(

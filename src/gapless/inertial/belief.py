@@ -127,7 +127,7 @@ class Belief:
     @property
     def C_nb(self) -> Array:
         """Direction cosine matrix of the nominal state."""
-        return attitude.to_matrix(self.q_nb)
+        return attitude.matrix(self.q_nb)
 
     def block(self, name: str) -> Array:
         """A block of additive states, such as "gyro_bias" (a view).

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -10,7 +11,7 @@ from msgspec import structs
 from gapless.alignment.clock import Curve, Offset, led, offset, path_curve, swinging, velocity_curve, way
 from gapless.alignment.shift import Shift, shift, wandering
 from gapless.alignment.uneven import Jitter, uneven
-from gapless.fold.feed import DRIFT, SINCE, events, parted
+from gapless.fold.feed import DRIFT, SINCE, in_order, merged, parted
 from gapless.fold.journal import KNOCK, Journal
 from gapless.fold.navigator import Navigator
 from gapless.runs.clocks import (
@@ -118,10 +119,10 @@ class FirstPass:
             self.system, adaptation=Adaptation(), bridge=BridgeUse(), rehearsal=RehearsalUse()
         )
         system = structs.replace(plain, gnss=gnss, filter=coarse, sensors=sensors)
-        navigator = Navigator(
-            settings(system, self.past, self.offsets, given_mounting(system), self.density, coarse.tick)
-        )
-        for event in events(self.past, stamps(system, self.offsets), thin=0.45):
+        built = settings(system, self.past, self.offsets, given_mounting(system), self.density, coarse.tick)
+        navigator = Navigator(replace(built, lateness=0.0))
+        held = in_order(self.past, stamps(system, self.offsets), thin=0.45)
+        for event in merged(self.past.imu, held):
             navigator.step(event)
             if navigator.aligned and navigator.time > navigator.journal.alignments[0][0] + self.enough:
                 break

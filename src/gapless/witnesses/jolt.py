@@ -13,6 +13,8 @@ from typing import Final, NamedTuple, Self
 import numpy as np
 
 from gapless._numba import kernel
+from gapless.attitude import matrix
+from gapless.inertial.propagate import QUAT
 from gapless.trip.recording import Array
 from gapless.units import DEG
 
@@ -51,29 +53,87 @@ class Jolt(NamedTuple):
     angle: float
 
 
+PEAK, LENGTH, STEADILY, FILLED, RING = 0, 1, 2, 3, 4
+"""Where in the memory of `lean` there are: the lean a tick ago [rad], how long a force is in steady driving
+[m/s^2], ticks that told it, ticks since the last change of attitude, and their forces."""
+
+
 @kernel
-def lean(ring: Array) -> tuple[float, float, Array]:
-    """How far the mean force leans from the vertical, and how long it is.
+def upright(p: Array, row: int, x: Array, rate: Array, force: Array) -> tuple[float, Array, Array]:
+    """What of a force is not the car's turning: a corner leans on the box, no blow does.
 
     Parameters
     ----------
-    ring : ndarray, shape (k, 3)
-        Mean forces of ticks, north, east, down by the filter's attitude [m/s^2].
+    p : ndarray, shape (row * row,)
+        Covariance.
+    row : int
+    x : ndarray
+        Nominal state.
+    rate, force : ndarray, shape (3,)
+        Mean of a tick [rad/s], [m/s^2].
 
     Returns
     -------
+    tilt : float
+        Standard deviation of the vertical [rad].
+    c : ndarray, shape (3, 3)
+        C_nb.
+    force : ndarray, shape (3,)
+        f - w x v in the box [m/s^2].
+    """
+    c, left, v = matrix(x[QUAT : QUAT + 4]), np.empty(3), np.zeros(3)
+    for i in range(3):
+        for j in range(3):
+            v[i] += c[j, i] * x[3 + j]
+    for i in range(3):
+        j, k = (i + 1) % 3, (i + 2) % 3
+        left[i] = force[i] - (rate[j] * v[k] - rate[k] * v[j])
+    return np.sqrt(max(0.5 * (p[6 * row + 6] + p[7 * row + 7]), 0.0)), c, left
+
+
+@kernel
+def lean(m: Array, c_nb: Array, force: Array, tilt: float) -> tuple[bool, float]:
+    """Take in a tick: whether the mean force leans as it does in a box that was turned, and how far.
+
+    Parameters
+    ----------
+    m : ndarray, shape (RING + 3 * WINDOW,)
+        Changed in place.
+    c_nb : ndarray, shape (3, 3)
+    force : ndarray, shape (3,)
+        Mean specific force in the box [m/s^2].
+    tilt : float
+        How far the filter may be wrong about the vertical [rad].
+
+    Returns
+    -------
+    turned : bool
     angle : float
         [rad]
-    length : float
-        [m/s^2]
-    mean : ndarray, shape (3,)
     """
+    slot = RING + 3 * (int(m[FILLED]) % WINDOW)
+    m[FILLED] += 1.0
+    for i in range(3):
+        m[slot + i] = c_nb[i, 0] * force[0] + c_nb[i, 1] * force[1] + c_nb[i, 2] * force[2]
+    if m[FILLED] < WINDOW:
+        return False, 0.0
     mean = np.zeros(3)
-    for i in range(ring.shape[0]):
-        for j in range(3):
-            mean[j] += ring[i, j] / ring.shape[0]
+    for k in range(WINDOW):
+        for i in range(3):
+            mean[i] += m[RING + 3 * k + i] / WINDOW
     length = np.sqrt(mean[0] ** 2 + mean[1] ** 2 + mean[2] ** 2)
-    return np.arccos(min(1.0, max(-1.0, -mean[2] / max(length, 1e-9)))), length, mean
+    if not np.isfinite(length + tilt):
+        return False, 0.0
+    angle = np.arccos(min(1.0, max(-1.0, -mean[2] / max(length, 1e-9))))
+    growing = angle > m[PEAK]
+    m[PEAK] = angle
+    if angle < STEADY:
+        m[STEADILY] += 1.0
+        m[LENGTH] += max(SLOWLY, 1.0 / m[STEADILY]) * (length - m[LENGTH])
+    leans = angle >= ANGLE + 3.0 * tilt
+    if not leans or growing or m[STEADILY] < KNOWN:  # all of the window must have come after it
+        return False, angle
+    return length - m[LENGTH] <= LONGER * m[LENGTH] * (1.0 / max(np.cos(angle), 0.2) - 1.0), angle
 
 
 @dataclass
@@ -82,20 +142,11 @@ class Jolts:
 
     Parameters
     ----------
-    ring : ndarray, shape (k, 3)
-        Replaced, never changed.
-    peak : float
-        The lean a tick ago [rad].
-    length : float
-        Of the force in steady driving [m/s^2].
-    steady : int
-        Ticks that told it.
+    memory : ndarray, shape (RING + 3 * WINDOW,)
+        As `lean` keeps it.
     """
 
-    ring: Array = field(default_factory=lambda: np.zeros((0, 3)))
-    peak: float = 0.0
-    length: float = 0.0
-    steady: int = 0
+    memory: Array = field(default_factory=lambda: np.zeros(RING + 3 * WINDOW))
 
     def feel(self, force: Array, c_nb: Array, tilt: float, tick: float) -> Jolt | None:
         """Take in a tick.
@@ -115,33 +166,21 @@ class Jolts:
         -------
         Jolt or None
         """
-        self.ring = np.concatenate([self.ring[-(WINDOW - 1) :], (c_nb @ force)[None, :]])
-        if len(self.ring) < WINDOW:
+        turned, angle = lean(self.memory, c_nb, force, tilt)
+        if not turned:
             return None
-        angle, length, mean = lean(self.ring)
-        if not np.isfinite(length + tilt):
-            return None
-        growing, self.peak = angle > self.peak, angle
-        if angle < STEADY:
-            self.steady += 1
-            self.length += max(SLOWLY, 1.0 / self.steady) * (length - self.length)
-        leans = angle >= ANGLE + 3.0 * tilt
-        if not leans or growing or self.steady < KNOWN:  # all of the window must have come after it
-            return None
-        if length - self.length > LONGER * self.length * (1.0 / max(float(np.cos(angle)), 0.2) - 1.0):
-            return None
+        felt = c_nb.T @ self.memory[RING:].reshape(WINDOW, 3).mean(axis=0)
         self.forget()
-        felt = c_nb.T @ mean
         turn = between(felt, -c_nb[2])
         return Jolt(turn, WINDOW * tick, felt - turn @ felt, angle)
 
     def forget(self) -> None:
         """The attitude changed: forces of before lean by another one."""
-        self.ring, self.peak = self.ring[:0], 0.0
+        self.memory[FILLED] = self.memory[PEAK] = 0.0
 
     def copy(self) -> Self:
         """An independent copy."""
-        return type(self)(self.ring, self.peak, self.length, self.steady)
+        return type(self)(self.memory.copy())
 
 
 def between(a: Array, b: Array) -> Array:
