@@ -205,16 +205,19 @@ def _fit(
         strays = [(np.abs(e).max(axis=1) / _SPIKE) ** 2 for e in best.whitened]
         spare = [np.maximum(s, e) for s, e in zip(spare, strays, strict=True)]
         best = _solve(blocks, spare, degree, middle, felt, ratio, walk)
-    scale = float(np.median(best.scales))
-    return best.value[0], best.sd[0], best.value[1], best.sd[1], middle, scale, scale * ratio
+    scale, (sd, drift_sd) = float(np.median(best.scales)), _deviations(best)
+    return best.value[0], sd, best.value[1], drift_sd, middle, scale, scale * ratio
 
 
 class _Solved(NamedTuple):
+    """Least squares: whitened residuals of each block, and the regressors beside them, axis by axis."""
+
     cost: float
     value: tuple[float, float]
-    sd: tuple[float, float]
+    cov: Array
     scales: Array
     whitened: list[Array]
+    parts: list[Array]
 
 
 def _solve(
@@ -263,18 +266,18 @@ def _solve(
         scales = np.sqrt(np.maximum(squares / np.array(sizes), 1e-12))
     cost = logs + float(2.0 * np.array(sizes) @ np.log(scales))
     whitened = [np.column_stack([off[k * d + i] for i in range(d)]) / scales[k] for k in range(len(blocks))]
-    sd = np.sqrt(np.maximum(np.diag(cov), _lasting(parts, scales, off, cov, d)))
-    return _Solved(cost, (float(value[0]), float(value[1])), (float(sd[0]), float(sd[1])), scales, whitened)
+    return _Solved(cost, (float(value[0]), float(value[1])), cov, scales, whitened, parts)
 
 
-def _lasting(parts: list[Array], scales: Array, off: list[Array], cov: Array, d: int) -> Array:
-    """Variances of what was fitted where residuals are not white all the same (Newey and West 1987)."""
-    middle = np.zeros_like(cov)
-    for k in range(len(scales)):
-        pairs = [parts[k * d + i][:, 1:] * off[k * d + i][:, None] for i in range(d)]
-        u = np.sum(pairs, axis=0) / scales[k] ** 2
+def _deviations(best: _Solved) -> tuple[float, float]:
+    """Of offset and drift, where residuals are not white all the same (Newey and West 1987)."""
+    cov, middle = best.cov, np.zeros_like(best.cov)
+    for k, (scale, off) in enumerate(zip(best.scales, best.whitened, strict=True)):
+        d = off.shape[1]
+        u = np.sum([best.parts[k * d + i][:, 1:] * off[:, i : i + 1] for i in range(d)], axis=0) / scale
         reach = min(int(LASTS / BIN), len(u) - 1)
         for lag in range(reach + 1):
             both = u[lag:].T @ u[: len(u) - lag]
             middle += (1.0 - lag / (reach + 1.0)) * (both + both.T) * (0.5 if lag == 0 else 1.0)
-    return np.asarray(np.diag(cov @ middle @ cov))
+    sd = np.sqrt(np.maximum(np.diag(cov), np.diag(cov @ middle @ cov)))
+    return float(sd[0]), float(sd[1])

@@ -19,6 +19,8 @@ from gapless.trip.steering import steered
 REACH: Final = 30.0
 """Offsets up to this are looked for [s]: leap seconds are 18."""
 _STEP: Final = 0.25
+_FINE: Final = 0.05
+"""Felt turns are laid out at such a step [s]: they are sums over two seconds."""
 _HALF: Final = 1.0
 """Turns are compared over twice this [s]."""
 _SHARP: Final = 1.0
@@ -87,12 +89,20 @@ def turns(imu: Imu, gnss: Gnss, reach: float = REACH, least: float = 0.0) -> Tur
     drove, angle = steered(_sound(gnss), _HALF), Sums.of(imu, imu.dtheta)
     slow = np.abs(drove.turned) < _SHARP
     turned, time = drove.turned[slow], drove.time[slow]
+    grid = np.arange(angle.time[0] + _HALF, angle.time[-1] - _HALF, _FINE)
+    swung = angle.around(grid, _HALF)
     for at in (time + s for s in offsets):
-        there = (at - _HALF > angle.time[0]) & (at + _HALF < angle.time[-1])
+        there = (at - _HALF > angle.time[0]) & (at < grid[-1]) if len(grid) else np.zeros(len(at), bool)
         there &= (np.abs(turned[there]) > _TURNING).sum() >= least
-        felt = angle.around(at[there], _HALF)
+        felt = _between(swung, (at[there] - grid[0]) / _FINE) if there.any() else swung[:0]
         explained.append(_explained(felt, turned[there]) if there.sum() >= _ENOUGH else 0.0)
     return Turns(offsets, np.array(explained), _turning(turned, angle))
+
+
+def _between(value: Array, at: Array) -> Array:
+    """Rows of a table at fractional indices."""
+    k = np.minimum(at.astype(int), len(value) - 2)
+    return np.asarray(value[k] + (at - k)[:, None] * (value[k + 1] - value[k]))
 
 
 def _sound(gnss: Gnss) -> Gnss:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -78,7 +79,8 @@ class FirstPass:
         self.offsets = {"position": self.base, "velocity": self.base, "odometer": 0.0} | self.given
         self.found: dict[str, Offset] = {}
         self.shifts: dict[str, Shift] = {}
-        self.jitter, self.drift_sd, self.errors = Jitter(), 0.0, (np.nan, np.nan)
+        self.jitter, self.drift_sd = Jitter(), 0.0
+        self.held: tuple[Curve, Array, Array] | None = None
         self.mounting = given_mounting(system)
         self.span = 0.0
         self.learned = False
@@ -170,8 +172,7 @@ class FirstPass:
             if np.isfinite(found["position"].sd):
                 held = time[fixed] + found["position"].value - base
                 self.jitter = uneven(curve, held, here)
-                if heard.any() and "velocity" in self.shifts:
-                    self.errors = wandering(curve, held, here, self.shifts["velocity"].white)
+                self.held = curve, held, here
         if odometer is not None and "odometer" not in self.given:
             speed = np.hypot(path.v_n[:, 0], path.v_n[:, 1])[:, None]
             found["odometer"] = offset(Curve(path.time, speed), odometer.time, odometer.speed[:, None], 1)
@@ -210,6 +211,13 @@ class FirstPass:
         if drift := self.offsets.get(DRIFT, 0.0):
             told.append(drift_decision(drift, self.drift_sd, self.span))
         return [*told, *jitter_decisions(self.jitter)]
+
+    @cached_property
+    def errors(self) -> tuple[float, float]:
+        """What of positions' errors is white, and what wanders [m]; NaN where velocities do not tell."""
+        if self.held is None or "velocity" not in self.shifts:
+            return np.nan, np.nan
+        return wandering(*self.held, self.shifts["velocity"].white)
 
     @property
     def share(self) -> float | None:
