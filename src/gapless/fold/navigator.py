@@ -142,7 +142,7 @@ class Navigator:
         """
         if isinstance(event, ImuBlock):
             for part in self._past.parts(event):
-                self._past.before(self._state, part)
+                self._past.before(self._state.copy(), part)
                 self._feel(part)
         elif event:
             self._hear(event)
@@ -207,10 +207,10 @@ class Navigator:
             self.adopt(manner)
         readings = (*(r for e in events if not isinstance(e, ImuBlock) for r in e), *late)
         self._state.expect(readings)
-        for event in events:
-            if isinstance(event, ImuBlock):
-                self._past.before(self._state, event)
-                self._feel(event)
+        blocks = [event for event in events if isinstance(event, ImuBlock)]
+        for k, block in enumerate(blocks):
+            self._past.before(self._state.copy() if k else state, block)
+            self._feel(block)
         self._past.heard(readings)
 
     def _apply_due(self) -> None:
@@ -275,7 +275,7 @@ class Navigator:
         raw, box = block, state.box
         block = in_box(raw, box)
         if not state.aligned:
-            self._told(block.rows(first, last), doubt)
+            self._told(block, first, last, doubt)
             state.clock = float(block.time[last - 1])
             return
         b, often = state.belief, s.row < s.tick
@@ -290,7 +290,7 @@ class Navigator:
                 block.time, block.dt, block.dtheta, block.dvel, first, end, s.period, s.tick, flush,
             )  # fmt: skip
             before, state.clock = state.clock, float(block.time[first - 1])
-            self._told(block.rows(begin, first), doubt)
+            self._told(block, begin, first, doubt)
             if doubt is not None:
                 stray(b, doubt, state.clock - before)
             if self.tape is not None and b.memory[at.COV_DT] == 0.0:
@@ -307,9 +307,12 @@ class Navigator:
             elif often:
                 self._row()
 
-    def _told(self, felt: ImuBlock, doubt: Array | None) -> None:
+    def _told(self, block: ImuBlock, first: int, last: int, doubt: Array | None) -> None:
         """Samples for who listens to them: no more than were propagated, for a tick may turn the box."""
         state = self._state
+        if state.aligner is None and not state.bridges:
+            return
+        felt = block.rows(first, last)
         if state.aligner is not None:
             rows = np.column_stack([felt.time, felt.dt, felt.dtheta, felt.dvel])
             state.aligner.feel(float(felt.time[-1]), rows)

@@ -241,14 +241,15 @@ class Past:
         return block.rows(0, end), block.rows(end, len(block.time))
 
     def before(self, state: State, block: ImuBlock) -> None:
-        """Keep the state that a block is about to change, and the block.
+        """Keep the state before a block, and the block.
 
         Parameters
         ----------
         state : State
+            A copy, which nobody else will change.
         block : ImuBlock
         """
-        self.entries.append((state.copy(), [block]))
+        self.entries.append((state, [block]))
         while len(self.entries) > 1 and self.entries[1][0].clock < state.clock - self.lateness:
             self.entries.pop(0)
 

@@ -19,8 +19,7 @@ from msgspec import structs
 
 from gapless.alignment.uneven import Jitter
 from gapless.filters.quantile import chi_square_quantile
-from gapless.fold.feed import events
-from gapless.fold.navigator import Navigator
+from gapless.runs.past import again
 from gapless.systems.arm import lever_arm, told_arm, with_arm
 from gapless.systems.build import settings, stamps
 from gapless.systems.learning import BridgeUse
@@ -46,8 +45,6 @@ SHORT = 240.0
 LEAST = 0.1
 """Standard deviation that a found arm starts with at least [m]; else twice its own, for the filter will
 hear the same fixes again."""
-ENOUGH = 600.0
-"""Seconds of navigation after which a pass learns little more."""
 LATE = 0.02
 """By how much a clock is moved to see what becomes of the arm [s]."""
 ROUNDS, SETTLED = 5, 0.05
@@ -188,24 +185,26 @@ def settle(past: Recording, system: System, first: Callable[[System], K]) -> tup
     told, known = told_arm(system, past), first(system)
     if known.span == 0.0 or not _shows(past, system, known.jitter.lasting):
         return known, Arm(lever_arm(system, past), None, _taken(system, past, None))
-    then = _in_turn(past, system, first, known)
-    found = _look(past, *then)
+    armed, then, found = _in_turn(past, system, first, known)
+    found = _doubted(past, armed, then, found)
     if found is not None and found.denies(told):
         sd = np.minimum(np.maximum(2.0 * found.sd, LEAST), system.gnss.lever_arm_sd)
-        return then[1], Arm(found.value, sd, _found(system, past, found))
+        return then, Arm(found.value, sd, _found(system, past, found))
     if told is None:
         return known, _guessed(system, known, found)
     return known, Arm(told, None, _taken(system, past, found))
 
 
-def _in_turn(past: Recording, system: System, first: Callable[[System], K], known: K) -> tuple[System, K]:
+def _in_turn(
+    past: Recording, system: System, first: Callable[[System], K], known: K
+) -> tuple[System, K, Found | None]:
     """Clocks and arm in turn, as long as positions at a clock ask for another arm than it was had with.
 
     A wrong arm makes a clock vague, too: what that leaves open does not count before both have settled.
     """
     told, used, armed = told_arm(system, past), lever_arm(system, past), system
+    found = _pass(past, armed, known, known.offsets)
     for _ in range(ROUNDS):
-        found = _pass(past, armed, known, known.offsets)
         if found is None or not found.denies(told):
             break
         moved, used = float(np.linalg.norm(found.value - used)), found.value
@@ -213,7 +212,8 @@ def _in_turn(past: Recording, system: System, first: Callable[[System], K], know
             break
         armed = with_arm(system, used)
         known = first(armed)
-    return armed, known
+        found = _pass(past, armed, known, known.offsets)
+    return armed, known, found
 
 
 def _shows(past: Recording, system: System, uneven: float) -> bool:
@@ -229,12 +229,13 @@ def _shows(past: Recording, system: System, uneven: float) -> bool:
     return math.hypot(stated, uneven * SPEED) < PRECISE
 
 
-def _look(past: Recording, system: System, known: Known) -> Found | None:
+def _doubted(past: Recording, system: System, known: Known, found: Found | None) -> Found | None:
     """What fixes say of the arm, and how far they would say it at another clock that may be."""
-    found = _pass(past, system, known, known.offsets)
+    if found is None or not found.seen or not known.clock_sd:
+        return found
     late = {**known.offsets, "position": known.offsets["position"] + LATE}
-    other = _pass(past, system, known, late) if known.clock_sd and found else None
-    if found is None or other is None:
+    other = _pass(past, system, known, late)
+    if other is None:
         return found
     moved = (other.value - found.value) * min(known.clock_sd, 1.0) / LATE
     return found._replace(covariance=found.covariance + np.outer(moved, moved))
@@ -244,11 +245,7 @@ def _pass(past: Recording, system: System, known: Known, offsets: Mapping[str, f
     """Navigate the past with the arm as a state, and fixes as good as they say."""
     free = _plain(with_arm(system, lever_arm(system, past), np.array(system.gnss.lever_arm_sd)))
     built = settings(free, past, offsets, known.mounting, known.density, free.filter.tick)
-    navigator = Navigator(built)
-    for event in events(past, stamps(free, offsets), thin=0.45):
-        navigator.step(event)
-        if navigator.aligned and navigator.time > navigator.journal.alignments[0][0] + ENOUGH:
-            break
+    navigator = again(past, built, stamps(free, offsets))
     times, belief = navigator.journal.times, navigator.belief
     if not times or not np.isfinite(belief.x).all():
         return None

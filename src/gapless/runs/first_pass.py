@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from functools import cached_property
 from typing import NamedTuple
 
@@ -12,7 +11,7 @@ from msgspec import structs
 from gapless.alignment.clock import Curve, Offset, led, offset, path_curve, swinging, velocity_curve, way
 from gapless.alignment.shift import Shift, shift, wandering
 from gapless.alignment.uneven import Jitter, uneven
-from gapless.fold.feed import DRIFT, SINCE, in_order, merged, parted
+from gapless.fold.feed import DRIFT, SINCE, parted
 from gapless.fold.journal import KNOCK, Journal
 from gapless.fold.navigator import Navigator
 from gapless.runs.clocks import (
@@ -24,6 +23,7 @@ from gapless.runs.clocks import (
     jitter_decisions,
     parting,
 )
+from gapless.runs.past import ENOUGH, again
 from gapless.sensors.vibration import gyro_density
 from gapless.systems.arm import lever_arm
 from gapless.systems.build import settings, stamps
@@ -34,8 +34,6 @@ from gapless.trip.solution import Decision
 from gapless.units import DEG
 
 CHANNELS = ("position", "velocity", "odometer")
-ENOUGH = 600.0
-"""Seconds of navigation after which a first pass learns little more."""
 JITTER = (0.3, 0.1, 0.05, 0.05, 0.05, 0.05)
 """How far stamps are trusted from pass to pass [s]: a clock still unknown must not bend the path."""
 
@@ -122,13 +120,7 @@ class FirstPass:
         )
         system = structs.replace(plain, gnss=gnss, filter=coarse, sensors=sensors)
         built = settings(system, self.past, self.offsets, given_mounting(system), self.density, coarse.tick)
-        navigator = Navigator(replace(built, lateness=0.0))
-        held = in_order(self.past, stamps(system, self.offsets), thin=0.45)
-        for event in merged(self.past.imu, held):
-            navigator.step(event)
-            if navigator.aligned and navigator.time > navigator.journal.alignments[0][0] + self.enough:
-                break
-        return navigator
+        return again(self.past, built, stamps(system, self.offsets), self.enough)
 
     def _learn(self, navigator: Navigator) -> bool:
         """Take the estimates of a pass; whether they settled."""

@@ -50,6 +50,8 @@ LOST: Final = 25.0
 """A filter that denies a receiver's consistent story of a drive for so long is what is wrong [s]."""
 RADIUS: Final = 6.371e6
 """Of the earth, for differences of seconds [m]."""
+NOWHERE: Final = np.zeros(3)
+"""Fixes are where the filter is."""
 RESTS, DRIVES = 0.5, 3.0
 """A reading below the first says that the car stands, a filter above the second that it does not [m/s]."""
 
@@ -67,7 +69,7 @@ class Hearing:
     corrected: Array
     channels: dict[str, Testimony] = field(default_factory=dict)
     fitted: dict[str, float] = field(default_factory=dict)
-    offset: Array = field(default_factory=lambda: np.zeros(3))
+    offset: Array = field(default_factory=lambda: NOWHERE)
     sign: Sign = field(default_factory=Sign)
     jolts: Jolts = field(default_factory=Jolts)
     origin: Array | None = None
@@ -108,7 +110,7 @@ class Hearing:
         fits = nis <= bound
         raw = self._metres(reading) if channel == "position" else reading.value[part]
         var = o.R.diagonal()[part]
-        self._tell(channel, reading.time, raw, float(np.sqrt(var[:2].max())))
+        self._tell(channel, reading.time, raw, math.sqrt(max(var[:2].tolist())))
         said = Said(reading.time, reading.value, raw, value, var, fits, nis, self._rests(reading, belief))
         if channel == "position":  # what drifts off while the car stands is the receiver, until it fits
             self.strayed = not fits and (self.strayed or reading.time - self.rested[1] < LATELY)
@@ -119,7 +121,7 @@ class Hearing:
             self.fitted[channel] = reading.time
         if channel == "position":
             doubtful = ruling == "silence" and mine.follows < reading.time
-            self.offset = o.z.copy() if doubtful else np.zeros(3)
+            self.offset = o.z.copy() if doubtful else NOWHERE
         return ruling
 
     def _tell(self, channel: str, time: float, raw: Array, sd: float) -> None:
@@ -149,9 +151,10 @@ class Hearing:
 
     def _turned(self, said: Said, ruling: Ruling) -> Ruling:
         """Whether accelerations are felt from another side than they are seen."""
-        past = self.channels["velocity"].past
-        change = past.change(said.time, said.value, said.raw, SPAN)
-        if change is None or ruling == "silence" or said.time - self.askew.time < 0.9:
+        if ruling == "silence" or said.time - self.askew.time < 0.9:
+            return ruling
+        change = self.channels["velocity"].past.change(said.time, said.value, said.raw, SPAN)
+        if change is None:
             return ruling
         self.askew.hear(said.time, *change)
         self.turned = self.askew.angle
@@ -280,7 +283,7 @@ class Hearing:
 
     def forget(self) -> None:
         """The filter began anew: nothing that was compared with it counts."""
-        self.channels, self.fitted, self.at_odds, self.offset = {}, {}, {}, np.zeros(3)
+        self.channels, self.fitted, self.at_odds, self.offset = {}, {}, {}, NOWHERE
         self.askew.forget()
         self.jolts.forget()
 

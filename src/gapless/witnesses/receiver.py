@@ -8,6 +8,7 @@ from typing import Final, Self
 
 import numpy as np
 
+from gapless._numba import kernel
 from gapless.trip.recording import Array
 
 SLOTS: Final = 14
@@ -23,6 +24,40 @@ LAXITY: Final = 0.4
 """Error of a mean velocity that is no contradiction [m/s]."""
 UNHEARD: Final = 3.0
 """A receiver without velocities for so long tells one story only [s]."""
+
+
+@kernel
+def ways(rows: Array, n: int, here: Array, doubt: float) -> tuple[bool, bool, bool]:
+    """Hold ways between places against ways that velocities add up to.
+
+    Parameters
+    ----------
+    rows : ndarray, shape (SLOTS, 5)
+        Time [s], place, and way by velocities so far [m].
+    n : int
+        Rows in use.
+    here : ndarray, shape (5,)
+        The present one.
+    doubt : float
+        What noise makes of the difference [m].
+
+    Returns
+    -------
+    some, torn, drove : bool
+        Whether there was anything to compare; whether any ways disagree; whether the longest was a drive.
+    """
+    some = torn = drove = False
+    for i in range(n):
+        dt = here[0] - rows[i, 0]
+        if dt >= REACH or dt < LEAST:
+            continue
+        north, east = here[1] - rows[i, 1], here[2] - rows[i, 2]
+        off = np.hypot(north - here[3] + rows[i, 3], east - here[4] + rows[i, 4])
+        torn |= off > doubt + LAXITY * dt
+        if not some:
+            drove = np.hypot(north, east) > 3.0 * dt
+        some = True
+    return some, torn, drove
 
 
 @dataclass
@@ -84,14 +119,10 @@ class Story:
             self.torn, self.since, self.n = False, math.inf, 0
             return
         here = np.array([time, *place, *(self.way + (time - self.time) * self.v_n)])
-        past = self.rows[: self.n]
-        past = past[(time - past[:, 0] < REACH) & (time - past[:, 0] >= LEAST)]
-        if len(past):
-            step = here - past
-            off = np.hypot(step[:, 1] - step[:, 3], step[:, 2] - step[:, 4])
-            torn = bool((off > DOUBT * math.sqrt(2.0) * sd + LAXITY * step[:, 0]).any())
+        some, torn, drove = ways(self.rows, self.n, here, DOUBT * math.sqrt(2.0) * sd)
+        if some:
             self.since = math.inf if torn else min(self.since, time)
-            self.torn, self.drove = torn, bool(np.hypot(step[0, 1], step[0, 2]) > 3.0 * step[0, 0])
+            self.torn, self.drove = torn, drove
         if not self.n or time - self.rows[self.n - 1, 0] >= APART:
             rows = self.rows.copy()
             if self.n == SLOTS:
