@@ -106,8 +106,10 @@ class Hearing:
         if mine is None:
             size = part.stop
             mine = self.channels[channel] = Testimony(size, PATIENCE[channel])
-        value = (o.z + o.H @ self.corrected)[part]
         fits = nis <= bound
+        if fits and mine.needless(reading.time, reading.value):
+            return self._in_passing(channel, reading)
+        value = (o.z + o.H @ self.corrected)[part]
         raw = self._metres(reading) if channel == "position" else reading.value[part]
         var = o.R.diagonal()[part]
         self._tell(channel, reading.time, raw, math.sqrt(max(var[:2].tolist())))
@@ -123,6 +125,15 @@ class Hearing:
             doubtful = ruling == "silence" and mine.follows < reading.time
             self.offset = o.z.copy() if doubtful else NOWHERE
         return ruling
+
+    def _in_passing(self, channel: str, reading: Reading) -> Ruling:
+        """Use a reading that fits between two that are heard."""
+        self.fitted[channel] = reading.time
+        if channel == "velocity":
+            self.story.moved(reading.time, reading.value[:2])
+        elif channel == "position":
+            self.strayed, self.offset = False, NOWHERE
+        return "use"
 
     def _tell(self, channel: str, time: float, raw: Array, sd: float) -> None:
         """The receiver's own story goes on."""

@@ -9,7 +9,7 @@ from typing import Final, Literal, NamedTuple, Self
 import numpy as np
 
 from gapless.trip.recording import Array
-from gapless.witnesses.increments import DOUBT, Increments, Slack
+from gapless.witnesses.increments import APART, DOUBT, Increments, Slack
 
 BRIEF: Final = 3.0
 """A spike is over as soon as a reading fits again; what lied for longer must show that it follows [s]."""
@@ -122,6 +122,27 @@ class Testimony:
     def following(self, time: float) -> bool:
         """Whether it has followed the motion for a while, heard or not."""
         return self.heard or time - self.follows >= SETTLED
+
+    def needless(self, time: float, logged: Array) -> bool:
+        """Whether a reading that fits need not be held against others: one was, a moment ago.
+
+        Parameters
+        ----------
+        time : float
+            [s]
+        logged : ndarray
+            As it was logged.
+
+        Returns
+        -------
+        bool
+            Never while the channel is silenced, or repeats itself.
+        """
+        if not self.heard or time - self.past.last >= APART or np.array_equal(logged, self.logged):
+            return False
+        self.logged, self.since = logged, time
+        self.surprises, self.surprised, self.worst = 0, time, 0.0
+        return True
 
     def hear(self, said: Said, slack: Slack, denied: bool, contradicted: bool, accused: bool) -> Ruling:
         """Rule on a reading.
