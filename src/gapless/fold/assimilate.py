@@ -81,7 +81,7 @@ def assimilate(
             journal.moved(time, "gyro", float(np.linalg.norm(drift)))
             nis, s, hp = assess(b.p, ROW, n, o.z, o.H, o.R)
     elif channel == "nonholonomic" and state.hearing.in_vain(channel, time, nis <= soft_bound(o.z.size)):
-        journal.knock(time, b.remount(o.z))
+        journal.knock(time, b.remount(o.z), state.box)
         nis, s, hp = assess(b.p, ROW, n, o.z, o.H, o.R)
     if ruling == "turn":
         _turn(state, o.z, journal, time)
@@ -154,7 +154,7 @@ def _turn(state: State, z: Array, journal: Journal, time: float) -> None:
     if abs(angle) < REVERSED and math.hypot(*v) > FAST and pointed(math.atan2(v[1], v[0]), ahead, angle):
         turn = about(c[2], angle)
         state.box = turn if state.box is None else turn @ state.box
-        journal.knock(time, angle)
+        journal.knock(time, angle, state.box)
         state.hearing.moved = time
         angle = 0.0
     else:

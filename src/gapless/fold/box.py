@@ -85,4 +85,4 @@ def _knocked(state: State, settings: Settings, journal: Journal, jolt: Jolt) -> 
     state.hearing.moved = state.clock
     for bridge in state.bridges:
         bridge.lost()
-    journal.knock(state.clock - jolt.since, jolt.angle)
+    journal.knock(state.clock - jolt.since, jolt.angle, state.box)

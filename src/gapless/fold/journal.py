@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import Any, Final
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 
@@ -17,6 +17,14 @@ from gapless.units import DEG
 
 KNOCK: Final = 8.0 * DEG
 """A box that was turned by less is not spoken of [rad]."""
+
+
+class Knock(NamedTuple):
+    """A box that was turned: when [s], by how much [rad], and what takes its axes to those of before."""
+
+    time: float
+    angle: float
+    box: Array | None
 
 
 @dataclass
@@ -61,7 +69,7 @@ class Journal:
         self.alignments: list[tuple[float, str]] = []
         self.rulings: list[tuple[float, str, str]] = []
         self.ruled: dict[str, tuple[float, str]] = {}
-        self.knocks: list[tuple[float, float]] = []
+        self.knocks: list[Knock] = []
         self.knocked = -math.inf
         self.moves: list[tuple[float, str, float]] = []
 
@@ -126,7 +134,7 @@ class Journal:
             self.rulings.append((time, channel, ruling))
             self.ruled[channel] = time, ruling
 
-    def knock(self, time: float, angle: float) -> None:
+    def knock(self, time: float, angle: float, box: Array | None) -> None:
         """Write down that the box was turned.
 
         Parameters
@@ -135,10 +143,14 @@ class Journal:
             [s]
         angle : float
             By how much its gravity turned [rad].
+        box : ndarray, shape (3, 3), or None
+            Takes what it feels from then on to the axes in which it sat at first.
         """
         if time > self.knocked + 1.0:
-            self.knocks.append((time, angle))
+            self.knocks.append(Knock(time, angle, box))
             self.knocked = time
+        elif self.knocks:
+            self.knocks[-1] = self.knocks[-1]._replace(box=box)
 
     def moved(self, time: float, what: str, size: float) -> None:
         """Write down that something else was found to have moved.

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import replace
 from functools import cached_property
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -12,7 +15,7 @@ from gapless.alignment.clock import Curve, Offset, led, offset, path_curve, swin
 from gapless.alignment.shift import Shift, shift, wandering
 from gapless.alignment.uneven import Jitter, uneven
 from gapless.fold.feed import DRIFT, SINCE, parted
-from gapless.fold.journal import KNOCK, Journal
+from gapless.fold.journal import KNOCK, Journal, Knock
 from gapless.fold.navigator import Navigator
 from gapless.runs.clocks import (
     Clocks,
@@ -29,7 +32,7 @@ from gapless.systems.arm import lever_arm
 from gapless.systems.build import settings, stamps
 from gapless.systems.learning import BridgeUse
 from gapless.systems.recipe import Adaptation, RehearsalUse, System
-from gapless.trip.recording import Array, Recording, Trajectory
+from gapless.trip.recording import Array, Imu, Recording, Trajectory
 from gapless.trip.solution import Decision
 from gapless.units import DEG
 
@@ -128,7 +131,7 @@ class FirstPass:
         self.span = float(path.time[-1] - path.time[0])
         self._learn_mounting(blocks, sds, _before_knocks(navigator.journal))
         settled, before = True, dict(self.offsets)
-        self.found = self._estimates(path, blocks)
+        self.found = self._estimates(path, blocks, as_at_first(self.past.imu, navigator.journal.knocks))
         for channel, estimate in self.found.items():
             self.offsets[channel] = believed(channel, self.clocks).value
             settled &= abs(self.offsets[channel] - before[channel]) < max(SETTLED, 0.5 * estimate.sd)
@@ -139,14 +142,14 @@ class FirstPass:
         """What is known of clocks so far."""
         return Clocks(self.given, self.base, self.found)
 
-    def _estimates(self, path: Trajectory, blocks: dict[str, Array]) -> dict[str, Offset]:
+    def _estimates(self, path: Trajectory, blocks: dict[str, Array], imu: Imu) -> dict[str, Offset]:
         gnss, odometer, base = self.past.gnss, self.past.odometer, self.base
         arm = lever_arm(self.system, self.past)
         time, found = gnss.time + base + parted(gnss.time, self.offsets), {}
         fixed = np.isfinite(gnss.lla).all(axis=1)
         heard = np.isfinite(gnss.v_n).all(axis=1)
         if heard.any():
-            felt = velocity_curve(path, blocks["accel_bias"], self.past.imu)
+            felt = velocity_curve(path, blocks["accel_bias"], imu)
             curve, v = swinging(felt, path, arm, 1), gnss.v_n[heard, :2]
             late = self.offsets["velocity"] - base
             if "velocity" not in self.given:
@@ -270,8 +273,30 @@ def given_mounting(system: System) -> Mounting:
 
 def _before_knocks(journal: Journal) -> int:
     """The last row at which the box sat as it did at first."""
-    knocks = [time for time, angle in journal.knocks if abs(angle) > KNOCK]
+    knocks = [k.time for k in journal.knocks if abs(k.angle) > KNOCK]
     return int(np.searchsorted(journal.times, knocks[0])) - 1 if knocks else -1
+
+
+def as_at_first(imu: Imu, knocks: Sequence[Knock]) -> Imu:
+    """What the IMU felt, in the axes in which its box sat at first.
+
+    Parameters
+    ----------
+    imu : Imu
+    knocks : sequence of Knock
+
+    Returns
+    -------
+    Imu
+    """
+    turned = imu
+    for knock, then in pairwise([*knocks, None]):
+        if knock is not None and knock.box is not None:
+            k = slice(*np.searchsorted(imu.time, [knock.time, then.time if then else np.inf]))
+            dtheta, dvel = turned.dtheta.copy(), turned.dvel.copy()
+            dtheta[k], dvel[k] = imu.dtheta[k] @ knock.box.T, imu.dvel[k] @ knock.box.T
+            turned = replace(turned, dtheta=dtheta, dvel=dvel)
+    return turned
 
 
 def given(system: System) -> dict[str, float]:

@@ -174,7 +174,7 @@ def _beliefs(channel: str, found: list[tuple[float, float]]) -> Notice:
 
 def _turned(e: Evidence) -> Iterator[Notice]:
     """A box that was turned on its way; what came soon after belongs to it."""
-    knocks = [(t, abs(angle)) for t, angle in e.journal.knocks if abs(angle) > KNOCK]
+    knocks = [(k.time, abs(k.angle)) for k in e.journal.knocks if abs(k.angle) > KNOCK]
     for group in _incidents([t for t, _ in knocks]):
         at, angle = group[0] - e.start, max(angle for t, angle in knocks if t in group)
         text = f"the box was turned by about {angle / DEG:.0f} deg at {at:.0f} s: "
@@ -184,7 +184,7 @@ def _turned(e: Evidence) -> Iterator[Notice]:
 
 def _leaned(e: Evidence) -> Iterator[Notice]:
     """A box that its own gyros felt being turned: it leans as no car does, and goes on doing so."""
-    known = [t for t, angle in e.journal.knocks if abs(angle) > KNOCK]
+    known = [k.time for k in e.journal.knocks if abs(k.angle) > KNOCK]
     known += _begun_anew(e.journal)
     for at, angle in leans(e.trajectory):
         if any(abs(at - time) < INCIDENT for time in known):
