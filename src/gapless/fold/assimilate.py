@@ -80,8 +80,10 @@ def assimilate(
             b.drift(drift)
             journal.moved(time, "gyro", float(np.linalg.norm(drift)))
             nis, s, hp = assess(b.p, ROW, n, o.z, o.H, o.R)
-    elif channel == "nonholonomic" and state.hearing.in_vain(channel, time, nis <= soft_bound(o.z.size)):
-        journal.knock(time, b.remount(o.z), state.box)
+    elif channel == "nonholonomic" and (
+        since := state.hearing.in_vain(channel, time, nis <= soft_bound(o.z.size))
+    ):
+        _slips(state, o.z, since, time, journal)
         nis, s, hp = assess(b.p, ROW, n, o.z, o.H, o.R)
     if ruling == "turn":
         _turn(state, o.z, journal, time)
@@ -102,6 +104,8 @@ def assimilate(
     journal.innovation(channel, time, o.z, s, nis, _factor(verdict.r, o.R))
     _process(state, settings, verdict)
     if verdict.widen:
+        if ruling == "believe" and channel == "odometer" and not (state.lost or state.hearing.seen(time)):
+            _felt_wrongly(state, o.z, state.hearing.channels[channel].insisted, time, journal)
         b.widen(o.H, o.z)
         if channel == "position":
             _find_astray(state, settings, time, o.z)
@@ -143,6 +147,22 @@ def _heard(
         _lose(state, settings)
         return "believe"
     return ruling
+
+
+def _slips(state: State, z: Array, since: float, time: float, journal: Journal) -> None:
+    """Doubt how the box sits in the car; or, where nobody sees the car move, all that it felt of late."""
+    if state.hearing.seen(time):
+        journal.knock(time, state.belief.remount(z), state.box)
+        return
+    _felt_wrongly(state, z, since, time, journal)
+    state.hearing.acquit("odometer")
+
+
+def _felt_wrongly(state: State, z: Array, since: float, time: float, journal: Journal) -> None:
+    """What is left to tell of the motion denies what was felt: a force was none."""
+    off = float(np.linalg.norm(z))
+    journal.moved(time, "force", off / since)
+    state.belief.tipped(off, since)
 
 
 def _turn(state: State, z: Array, journal: Journal, time: float) -> None:

@@ -16,6 +16,8 @@ from gapless.trip.recording import Array
 from gapless.units import DEG
 
 CORE_STATES: Final = 15
+GRAVITY: Final = 9.8
+"""For what a tilt does [m/s^2]."""
 SECONDS: Final = 5.0
 """In which a tilt shows in the velocity, for `Belief.doubt`."""
 
@@ -205,7 +207,7 @@ class Belief:
             Variance of each state when nothing is known of it; biases come back to a tenth of it.
         """
         p, blocks = self.p.reshape(ROW, ROW), self.layout.blocks
-        tilt = min(off / (SECONDS * 9.8), 0.3)
+        tilt = min(off / (SECONDS * GRAVITY), 0.3)
         heading = min(off / max(float(np.hypot(*self.v_n[:2])), 5.0), 1.0)
         p[(6, 7, 8), (6, 7, 8)] += np.square([tilt, tilt, heading])
         for name in ("gyro_bias", "accel_bias"):
@@ -267,6 +269,25 @@ class Belief:
         p[8, 8] += turn[0] ** 2
         p[(9, 10, 11), (9, 10, 11)] += np.square(self.C_nb[2] * turn[0] / SECONDS)
         return float(np.hypot(*turn))
+
+    def tipped(self, off: float, since: float) -> None:
+        """Doubt the vertical in the box, and all that came of it: a force that was none was integrated.
+
+        Parameters
+        ----------
+        off : float
+            What it made of the velocity [m/s].
+        since : float
+            In so many seconds.
+        """
+        n, p, size = self.layout.n, self.P, max(off / since, 0.5)
+        for axis, (tilted, by) in enumerate(((7, -1.0), (6, 1.0), (8, 0.0))):
+            u = np.zeros(n)  # psi x f for an attitude that is off by psi
+            u[axis], u[3 + axis], u[tilted] = 0.5 * since**2, since, by / GRAVITY
+            p += np.outer(u, u) * np.square(size if by else 0.3 * size)
+        if "mounting" in self.layout:
+            pitch = self.layout.blocks["mounting"].start
+            p[pitch, pitch] += np.square(size / GRAVITY)
 
     def knocked(self, turn: Array, since: float, gained: Array, ceiling: Array) -> None:
         """Go on after the box was turned: in its former axes, in doubt of how well these are known.

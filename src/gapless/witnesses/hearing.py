@@ -116,7 +116,8 @@ class Hearing:
         said = Said(reading.time, reading.value, raw, value, var, fits, nis, self._rests(reading, belief))
         if channel == "position":  # what drifts off while the car stands is the receiver, until it fits
             self.strayed = not fits and (self.strayed or reading.time - self.rested[1] < LATELY)
-        ruling = mine.hear(said, self._slack(channel, belief), *self._against(channel, reading.time))
+        slack, suspected = self._slack(channel, belief), self._suspected(channel)
+        ruling = mine.hear(said, slack, *self._against(channel, reading.time, o.z, belief), suspected)
         if channel == "velocity":
             ruling = self._turned(said, ruling)
         if fits and ruling == "use":
@@ -190,8 +191,7 @@ class Hearing:
         ndarray, shape (3,), or None
             [rad/s], once in `INSISTS` seconds.
         """
-        seen = any(self._believed(channel, time) for channel in ("position", "velocity"))
-        if not seen or time - self.rested[1] > APART:
+        if not self.seen(time) or time - self.rested[1] > APART:
             self.rested = time, time, np.zeros(3), 0
         since, _, total, n = self.rested
         self.rested = since, time, total + rate, n + 1
@@ -202,8 +202,8 @@ class Hearing:
         known = np.sqrt(belief.P.diagonal()[9:12])
         return mean if bool((np.abs(mean) > ZERO + 4.0 * known).any()) else None
 
-    def in_vain(self, name: str, time: float, fits: bool) -> bool:
-        """Whether a constraint has surprised a filter that GNSS is with for too long: what it rests on moved.
+    def in_vain(self, name: str, time: float, fits: bool) -> float:
+        """For how long a constraint has surprised the filter, once that is too long: what it rests on moved.
 
         Parameters
         ----------
@@ -216,15 +216,38 @@ class Hearing:
 
         Returns
         -------
-        bool
-            True once; the filter is to be widened.
+        float
+            [s], once; else 0.
         """
-        seen = any(self._believed(channel, time) for channel in ("position", "velocity"))
         since = self.at_odds.get(name, math.inf)
         long = time - since >= INSISTS
-        if fits or not seen or long or since == math.inf:
+        if fits or long or since == math.inf:
             self.at_odds[name] = time
-        return long and seen and not fits
+        return time - since if long and not fits else 0.0
+
+    def seen(self, time: float) -> bool:
+        """Whether GNSS is with the filter.
+
+        Parameters
+        ----------
+        time : float
+            [s]
+
+        Returns
+        -------
+        bool
+        """
+        return any(self._believed(channel, time) for channel in ("position", "velocity"))
+
+    def acquit(self, channel: str) -> None:
+        """Hear a channel again, for it was the filter that was wrong.
+
+        Parameters
+        ----------
+        channel : str
+        """
+        if channel in self.channels:
+            self.channels[channel].silent = math.inf
 
     def resting(self, time: float, rests: bool) -> float:
         """Factor on the variance of a fix: those of a standing car have their error in common.
@@ -260,9 +283,12 @@ class Hearing:
             sd = math.sqrt(max(float(p[3, 3] + p[4, 4]), 0.0))
             witnessed = self._believed("velocity", belief.time) or self._believed("odometer", belief.time)
             return Slack(3.0 * sd + LAXITY, 0.0 if witnessed else FELT["velocity"])
-        other = self.channels.get("position")
-        suspect = channel == "velocity" and other is not None and not other.heard
-        return Slack(FELT[channel] * (SUSPECT if suspect else 1.0))
+        return Slack(FELT[channel] * (SUSPECT if self._suspected(channel) < math.inf else 1.0))
+
+    def _suspected(self, channel: str) -> float:
+        """Since when a receiver's place has been silenced, for its speed [s]."""
+        place = self.channels.get("position")
+        return math.inf if channel != "velocity" or place is None else place.silent
 
     def _rests(self, reading: Reading, belief: Belief) -> bool:
         """Whether it says that the car stands where the filter drives."""
@@ -271,7 +297,7 @@ class Hearing:
         said = math.hypot(*reading.value[:2]) if reading.channel == "velocity" else abs(reading.value[0])
         return said < RESTS and math.hypot(*belief.v_n[:2]) > DRIVES
 
-    def _against(self, channel: str, time: float) -> tuple[bool, bool, bool]:
+    def _against(self, channel: str, time: float, z: Array, belief: Belief) -> tuple[bool, bool, bool]:
         """Whether others are with the filter against one that is heard, against one that was silenced.
 
         And whether it is a position that tells the story of velocities that were silenced.
@@ -286,7 +312,15 @@ class Hearing:
         if channel == "velocity" and self.story.torn:
             return True, True, False
         others = any(self._believed(name, time) for name in PATIENCE if name != channel)
-        return others and channel == "odometer", others, False
+        return others and (channel == "odometer" or self._rolled(time, z, belief)), others, False
+
+    def _rolled(self, time: float, z: Array, belief: Belief) -> bool:
+        """Whether a velocity is about another speed, mostly, and wheels that turn do not see it."""
+        wheels = self.channels.get("odometer")
+        if wheels is None or not self._believed("odometer", time) or wheels.copies(time):
+            return False
+        v = belief.v_n[:2]
+        return abs(math.hypot(*(v + z[:2])) - math.hypot(*v)) > 0.5 * math.hypot(*z[:2])
 
     def _believed(self, channel: str, time: float) -> bool:
         mine = self.channels.get(channel)

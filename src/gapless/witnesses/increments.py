@@ -94,6 +94,39 @@ def excess(
     return worst
 
 
+@kernel
+def moved(
+    rows: Array, n: int, now: float, z: Array, raw: Array, var: Array,
+    doubt: float, rate: float, bend: float, since: float,
+) -> bool:  # fmt: skip
+    """Whether there was any motion to follow: a channel that stands still agrees with a car that does.
+
+    Parameters
+    ----------
+    rows, n, now, z, raw, var, doubt, rate, bend
+        As for `excess`.
+    since : float
+        Readings from then on [s].
+
+    Returns
+    -------
+    bool
+        Whether one that stood still would have been found out.
+    """
+    m = z.size
+    for i in range(n):
+        if rows[i, 0] < since:
+            continue
+        felt = noise = 0.0
+        for j in range(min(m, 2)):
+            felt += (raw[j] - rows[i, 1 + m + j] - z[j] + rows[i, 1 + j]) ** 2
+            noise = max(noise, var[j] + rows[i, 1 + 2 * m + j])
+        dt = now - rows[i, 0]
+        if np.sqrt(felt) > doubt * np.sqrt(noise) + rate * dt + 0.5 * bend * dt * dt:
+            return True
+    return False
+
+
 @dataclass
 class Increments:
     """What a channel said lately, less what was felt.
@@ -139,6 +172,10 @@ class Increments:
         float
         """
         return float(excess(self.rows, self.n, time, value, raw, var, doubt, slack.rate, slack.bend, REACH))
+
+    def moved(self, time: float, value: Array, raw: Array, var: Array, slack: Slack, since: float) -> bool:
+        """Whether the car moved between a reading since some time and this one; see `moved`."""
+        return bool(moved(self.rows, self.n, time, value, raw, var, DOUBT, *slack, since))
 
     def change(self, time: float, value: Array, raw: Array, span: tuple[float, float]) -> Array | None:
         """How much was said and was felt since a reading of some seconds ago.

@@ -68,6 +68,11 @@ class Said(NamedTuple):
     nis: float
     rests: bool = False
 
+    @property
+    def compared(self) -> tuple[float, Array, Array, Array]:
+        """What `Increments` compare."""
+        return self.time, self.value, self.raw, self.var
+
 
 @dataclass
 class Testimony:
@@ -89,6 +94,10 @@ class Testimony:
         How often it was silenced.
     surprises, surprised, worst : int, float, float
         Surprising readings in a row, since when [s], and the largest z' S^-1 z of them.
+    insisted : float
+        For how long it had surprised the filter when it was believed against it last [s].
+    proved : float
+        When it last followed a motion while that was in doubt [s].
     logged : ndarray
         Its last reading.
     past : Increments
@@ -103,6 +112,8 @@ class Testimony:
     surprises: int = 0
     surprised: float = math.inf
     worst: float = 0.0
+    insisted: float = 0.0
+    proved: float = -math.inf
     logged: Array = field(default_factory=lambda: np.zeros(0))
     past: Increments = field(default_factory=lambda: Increments(0))
 
@@ -144,7 +155,15 @@ class Testimony:
         self.surprises, self.surprised, self.worst = 0, time, 0.0
         return True
 
-    def hear(self, said: Said, slack: Slack, denied: bool, contradicted: bool, accused: bool) -> Ruling:
+    def hear(
+        self,
+        said: Said,
+        slack: Slack,
+        denied: bool = False,
+        contradicted: bool = False,
+        accused: bool = False,
+        suspected: float = math.inf,
+    ) -> Ruling:
         """Rule on a reading.
 
         Parameters
@@ -157,6 +176,9 @@ class Testimony:
             one that was silenced is not believed however long it insists.
         accused : bool
             Whether it tells the story of a channel that lied.
+        suspected : float
+            Since when the other channel of the same receiver has been silenced [s]: it is not heard before
+            it has followed some motion since.
 
         Returns
         -------
@@ -167,18 +189,22 @@ class Testimony:
             fresh = type(self)(self.size, self.patience, lies=self.lies)
             vars(self).update(vars(fresh))
         odd = self._odd(said, slack) or accused
+        if odd:
+            self.past.forget()
+        elif not self.heard or suspected < math.inf:
+            since = self.follows if suspected == math.inf else max(suspected, self.follows)
+            if self.proved < since and self.past.moved(*said.compared, slack, since):
+                self.proved = said.time
+        unproved = suspected < math.inf and self.proved < suspected
+        self.past.keep(*said.compared)
         if self.heard:
-            if odd:
+            if odd or unproved:
                 self.silent = self.follows = said.time
-                self.lies += 1
-                self.past.forget()
-            self.past.keep(said.time, said.value, said.raw, said.var)
-            return "silence" if odd else self._insists(said, denied)
+                self.lies += odd
+            return "silence" if odd or unproved else self._insists(said, denied)
         if odd or said.rests or self.copies(said.time):  # a copy follows nothing
             self.follows = said.time
-            self.past.forget()
-        self.past.keep(said.time, said.value, said.raw, said.var)
-        return "silence" if accused else self._again(said, contradicted)
+        return "silence" if accused or unproved else self._again(said, contradicted)
 
     def _odd(self, said: Said, slack: Slack) -> bool:
         """Whether it did not change as was felt."""
@@ -190,7 +216,7 @@ class Testimony:
             if not said.fits:
                 return True
             doubt, slack = COPY_DOUBT, Slack(COPY_SHARE * slack.rate, COPY_SHARE * slack.bend)
-        return self.past.excess(said.time, said.value, said.raw, said.var, slack, doubt) > 1.0
+        return self.past.excess(*said.compared, slack, doubt) > 1.0
 
     def _insists(self, said: Said, denied: bool) -> Ruling:
         """Whether a channel that is heard has surprised the filter for too long to be an accident."""
@@ -203,6 +229,7 @@ class Testimony:
             return "use"
         if said.nis < WANES * self.worst:  # a receiver's mistake passes, a filter's does not by itself
             return "use"
+        self.insisted = said.time - self.surprised
         self.surprises, self.surprised, self.worst = 0, said.time, 0.0
         if denied:
             self.silent = self.follows = said.time
@@ -217,8 +244,9 @@ class Testimony:
             self.silent = math.inf
             return "use"
         late = self.follows - self.silent > BRIEF  # it was led astray meanwhile: the way back is short
-        if followed >= (SETTLED if late else self.patience) and not contradicted:
-            self.silent = math.inf
+        enough = followed >= (SETTLED if late else self.patience) and self.proved > self.follows
+        if enough and not contradicted:
+            self.silent, self.insisted = math.inf, lasted
             return "believe"
         return "silence"
 

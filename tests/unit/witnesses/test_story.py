@@ -1,7 +1,7 @@
 """Whether a receiver's places and speeds tell one story."""
 
 import numpy as np
-from hypothesis import given, settings
+from hypothesis import given, settings, settings
 from hypothesis import strategies as st
 
 from gapless.witnesses.receiver import DOUBT, LAXITY, LEAST, SLOTS, UNHEARD, Story
@@ -19,6 +19,7 @@ def told(story, times, place, v_n):
     return np.array(torn)
 
 
+@settings(deadline=None)  # the first example compiles a kernel
 @given(
     st.lists(st.tuples(st.floats(-6.0, 6.0), st.floats(-6.0, 6.0)), min_size=10, max_size=40),
     st.integers(0, 2**32 - 1),

@@ -17,16 +17,17 @@ from gapless.witnesses.testimony import Testimony as Channel
 
 PATIENCE, RATE, SD = 30.0, 5.0, 1.0
 SLACK = Slack(0.5)
+DRIVEN = 5.0
 
 
 def said(time, off=0.0, fits=True, logged=None, rests=False, nis=1e3):
-    """Of a car that stands for the inertial sensors: what it says is how far off it is.
+    """Of a car that drives on steadily: what it says but for that is how far off it is.
 
     The last digits of what is logged are noise, so that no two are the same.
     """
     value = np.full(2, off, float)
     own = value + 1e-3 * np.sin(1e3 * time) if logged is None else np.full(2, logged, float)
-    return Said(time, own, value, value, np.full(2, SD**2), fits, 1.0 if fits else nis, rests)
+    return Said(time, own, value + DRIVEN * time, value, np.full(2, SD**2), fits, 1.0 if fits else nis, rests)
 
 
 def hears(channel, readings, slack=SLACK, denied=False, contradicted=False, accused=False):
