@@ -1,7 +1,7 @@
 """Whether a receiver's places and speeds tell one story."""
 
 import numpy as np
-from hypothesis import given, settings, settings
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from gapless.witnesses.receiver import DOUBT, LAXITY, LEAST, SLOTS, UNHEARD, Story
