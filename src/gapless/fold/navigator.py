@@ -18,8 +18,9 @@ from gapless.fold.box import before_box, in_box, watch
 from gapless.fold.journal import Journal
 from gapless.fold.manner import Manner
 from gapless.fold.observed import observed
+from gapless.fold.past import Past, sorted_out
 from gapless.fold.settings import Settings
-from gapless.fold.state import Past, State
+from gapless.fold.state import State
 from gapless.fold.stated import beside
 from gapless.fold.tape import Tape
 from gapless.inertial import propagate as at
@@ -31,7 +32,7 @@ from gapless.inertial.unseen import stray, tilt
 from gapless.measurements.base import Observation
 from gapless.trip.events import EPS, GAP, Event, ImuBlock, Motion, Reading
 from gapless.trip.recording import Array
-from gapless.witnesses.hearing import Hearing
+from gapless.witnesses.hearing import FoundOut, Hearing
 
 __all__ = ["Navigator", "Settings"]
 
@@ -73,7 +74,7 @@ class Navigator:
         self._state = State(
             belief, rules, constraints, bridges, aligner, wander, StampDoubt(), manner.noise, manner, hearing
         )
-        self._past = Past(settings.lateness)
+        self._past = Past(settings.lateness, settings.memory)
         self._propagate = propagate_points if settings.cubature else at.propagate
         self.dropped = 0
         self.tape: Tape | None = None
@@ -141,9 +142,7 @@ class Navigator:
             `Settings.lateness`.
         """
         if isinstance(event, ImuBlock):
-            for part in self._past.parts(event):
-                self._past.before(self._state.copy(), part)
-                self._feel(part)
+            self._through(list(self._past.parts(event)))
         elif event:
             self._hear(event)
 
@@ -201,16 +200,37 @@ class Navigator:
         if found is None:
             self.dropped += len(late)
             return
-        (state, events), manner = found, self._state.manner
-        self._state = state.copy()
-        if state.manner is not manner:
+        kept, fed = found
+        self._return_to(kept)
+        self._through(*sorted_out(fed, late), kept)
+
+    def _return_to(self, kept: State) -> None:
+        manner = self._state.manner
+        self._state = kept.copy()
+        if kept.manner is not manner:
             self.adopt(manner)
-        readings = (*(r for e in events if not isinstance(e, ImuBlock) for r in e), *late)
+
+    def _through(
+        self, blocks: list[ImuBlock], readings: tuple[Reading, ...] = (), kept: State | None = None
+    ) -> None:
+        """Run through blocks; anew from before a lie, where one is found out on the way.
+
+        `kept` is the present state, where the past is to have it as it was.
+        """
         self._state.expect(readings)
-        blocks = [event for event in events if isinstance(event, ImuBlock)]
-        for k, block in enumerate(blocks):
-            self._past.before(self._state.copy() if k else state, block)
-            self._feel(block)
+        while blocks:
+            block = blocks.pop(0)
+            self._past.before(kept or self._state.copy(), block)
+            kept = None
+            try:
+                self._feel(block)
+            except FoundOut as lie:
+                kept, fed = self._past.back(lie.since)
+                kept.hearing.disown(lie)
+                again, readings = sorted_out(fed, readings)
+                blocks = again + blocks
+                self._return_to(kept)
+                self._state.expect(readings)
         self._past.heard(readings)
 
     def _apply_due(self) -> None:
@@ -231,6 +251,8 @@ class Navigator:
         observation = observed(state, self.settings, reading)
         state.face(observation)
         used = self._update(reading.channel, reading.time, observation, reading)
+        if state.hearing.lie is not None and self.settings.memory:
+            raise state.hearing.lie
         if used:
             state.heard[reading.channel] = reading.time
         for bridge in state.bridges:

@@ -53,6 +53,8 @@ class Settings:
         Time between journal rows [s].
     lateness : float
         How late a reading may arrive and still be put in its place [s].
+    memory : float
+        What a receiver that is found out said is taken back as far as this [s]; 0: never.
     misalignment : float
         Standard deviation of the box's axes against the sensors' [rad].
     wander_time : float
@@ -83,6 +85,7 @@ class Settings:
     period: float = 0.05
     row: float = 0.1
     lateness: float = 0.0
+    memory: float = 12.0
     misalignment: float = 0.0
     wander_time: float = 60.0
     arm_doubt: Array = field(default_factory=lambda: np.zeros((3, 3)))

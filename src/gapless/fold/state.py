@@ -1,4 +1,4 @@
-"""What a navigator remembers: its present state, and the recent past for readings that come late."""
+"""Everything of a navigator that changes."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from gapless.inertial.belief import Belief
 from gapless.inertial.lately import Lately
 from gapless.inertial.unseen import UNKNOWN, Turned, lose_track, turn, turned_about
 from gapless.measurements.base import Constraint, Observation
-from gapless.trip.events import Event, ImuBlock, Reading
+from gapless.trip.events import Reading
 from gapless.trip.recording import Array
 from gapless.witnesses.hearing import Hearing
 
@@ -29,8 +29,6 @@ SOON: Final = 60.0
 """A filter that fixes put right does not go far astray again within this time [s]."""
 ASIDE: Final = 1e-6
 """An observation that sees less than this share of its own variance has no direction."""
-REACH: Final = 0.5
-"""So much longer than `lateness` is the last part of a long block [s]."""
 
 
 @dataclass
@@ -209,92 +207,3 @@ class State:
         for reading in readings:
             if reading.time > self.clock and not any(reading is waiting for waiting in self.pending):
                 bisect.insort(self.pending, reading, key=lambda r: r.time)
-
-
-class Past:
-    """States before each recent block, and what was fed since: enough to put a late reading in its place.
-
-    Parameters
-    ----------
-    lateness : float
-        How far back it reaches [s]; at least the last block is kept.
-    """
-
-    def __init__(self, lateness: float) -> None:
-        self.lateness = lateness
-        self.entries: list[tuple[State, list[Event]]] = []
-
-    def parts(self, block: ImuBlock) -> tuple[ImuBlock, ...]:
-        """A long block in two: what late readings reach need not be run again together with all before it.
-
-        Parameters
-        ----------
-        block : ImuBlock
-
-        Returns
-        -------
-        tuple of ImuBlock
-        """
-        end = int(block.time.searchsorted(block.time[-1] - self.lateness - REACH))
-        if end == 0 or block.time[end] - block.time[0] < REACH:
-            return (block,)
-        return block.rows(0, end), block.rows(end, len(block.time))
-
-    def before(self, state: State, block: ImuBlock) -> None:
-        """Keep the state before a block, and the block.
-
-        Parameters
-        ----------
-        state : State
-            A copy, which nobody else will change.
-        block : ImuBlock
-        """
-        self.entries.append((state, [block]))
-        while len(self.entries) > 1 and self.entries[1][0].clock < state.clock - self.lateness:
-            self.entries.pop(0)
-
-    def heard(self, readings: tuple[Reading, ...]) -> None:
-        """Keep readings with the latest block.
-
-        Parameters
-        ----------
-        readings : tuple of Reading
-        """
-        if self.entries:
-            oldest = self.entries[0][0].clock
-            kept = tuple(r for r in readings if r.time > oldest)
-            if kept:
-                self.entries[-1][1].append(kept)
-
-    def rewind(self, time: float) -> tuple[State, list[Event]] | None:
-        """The latest state kept from before a time, and all that was fed after it.
-
-        Parameters
-        ----------
-        time : float
-            [s]
-
-        Returns
-        -------
-        (State, list of Event) or None
-            None where the time is beyond what is kept. What is returned is forgotten.
-        """
-        k = len(self.entries) - 1
-        while k >= 0 and self.entries[k][0].clock >= time:
-            k -= 1
-        if k < 0:
-            return None
-        state, events = self.entries[k][0], [e for _, fed in self.entries[k:] for e in fed]
-        del self.entries[k:]
-        return state, events
-
-    def copy(self) -> Past:
-        """An independent copy; states are never changed once kept, so they are shared.
-
-        Returns
-        -------
-        Past
-        """
-        new = Past(self.lateness)
-        new.entries = [(state, list(events)) for state, events in self.entries]
-        return new

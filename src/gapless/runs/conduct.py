@@ -22,7 +22,7 @@ Folding = Navigator | Rehearsing
 """What events are folded into."""
 Finish = Callable[[Settings], Settings]
 """Changes what a navigator is built from."""
-FIXED = ("layout", "tick", "period", "row", "lateness", "wander_time", "open_loop", "cubature")
+FIXED = ("layout", "tick", "period", "row", "lateness", "memory", "wander_time", "open_loop", "cubature")
 """Settings that no preset changes."""
 
 

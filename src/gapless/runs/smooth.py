@@ -134,7 +134,7 @@ def _on_ticks(built: Settings) -> Settings:
     if built.row < built.tick - 1e-9:
         most = 1.0 / built.tick
         raise ConfigError(f"smoothing gives {most:g} rows a second at most; ask for no more")
-    return replace(built, period=built.tick, lateness=0.0)
+    return replace(built, period=built.tick, lateness=0.0, memory=0.0)
 
 
 def _back(adjoint: Adjoint, tape: Tape) -> list[Row]:

@@ -52,8 +52,27 @@ RADIUS: Final = 6.371e6
 """Of the earth, for differences of seconds [m]."""
 NOWHERE: Final = np.zeros(3)
 """Fixes are where the filter is."""
+SURE: Final = 2.0
+"""A silence for so long is no accident [s]."""
+FAR: Final = 10.0
+"""What was said is taken back no further [s]."""
 RESTS, DRIVES = 0.5, 3.0
 """A reading below the first says that the car stands, a filter above the second that it does not [m/s]."""
+
+
+class FoundOut(Exception):
+    """A receiver's channel was silenced for good: what it said of late is taken back.
+
+    Parameters
+    ----------
+    channel : str
+    since, until : float
+        Its readings are not heard, these included [s].
+    """
+
+    def __init__(self, channel: str, since: float, until: float) -> None:
+        super().__init__(channel)
+        self.channel, self.since, self.until = channel, since, until
 
 
 @dataclass
@@ -81,6 +100,8 @@ class Hearing:
     askew: Askew = field(default_factory=Askew)
     story: Story = field(default_factory=Story)
     at_odds: dict[str, float] = field(default_factory=dict)
+    disowned: dict[str, FoundOut] = field(default_factory=dict)
+    lie: FoundOut | None = None
 
     def hear(self, reading: Reading, o: Observation, nis: float, bound: float, belief: Belief) -> Ruling:
         """Rule on a reading before it is used.
@@ -107,7 +128,9 @@ class Hearing:
             size = part.stop
             mine = self.channels[channel] = Testimony(size, PATIENCE[channel])
         fits = nis <= bound
-        if fits and mine.needless(reading.time, reading.value):
+        lie = self.disowned.get(channel)
+        known = lie is not None and lie.since <= reading.time <= lie.until
+        if fits and not known and mine.needless(reading.time, reading.value):
             return self._in_passing(channel, reading)
         value = (o.z + o.H @ self.corrected)[part]
         raw = self._metres(reading) if channel == "position" else reading.value[part]
@@ -120,12 +143,30 @@ class Hearing:
         ruling = mine.hear(said, slack, *self._against(channel, reading.time, o.z, belief), suspected)
         if channel == "velocity":
             ruling = self._turned(said, ruling)
+        if known:
+            ruling = mine.silence(reading.time)
+        elif ruling == "silence" and channel != "odometer":
+            self._found_out(channel, mine, reading.time, -math.inf if lie is None else lie.until)
         if fits and ruling == "use":
             self.fitted[channel] = reading.time
         if channel == "position":
             doubtful = ruling == "silence" and mine.follows < reading.time
             self.offset = o.z.copy() if doubtful else NOWHERE
         return ruling
+
+    def _found_out(self, channel: str, mine: Testimony, time: float, before: float) -> None:
+        """Take back what a receiver said that has been silenced for longer than by an accident."""
+        if mine.silent > before and time - mine.silent >= SURE:
+            self.lie = FoundOut(channel, max(mine.lying, time - FAR), time)
+
+    def disown(self, lie: FoundOut) -> None:
+        """Go through readings again without those of a liar.
+
+        Parameters
+        ----------
+        lie : FoundOut
+        """
+        self.disowned = {**self.disowned, lie.channel: lie}
 
     def _in_passing(self, channel: str, reading: Reading) -> Ruling:
         """Use a reading that fits between two that are heard."""

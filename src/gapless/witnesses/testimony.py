@@ -17,6 +17,10 @@ SETTLED: Final = 3.0
 """For so long must what was silenced have followed the motion before it is heard again [s]."""
 FORGETS: Final = 10.0
 """After such a silence of its own a channel is heard like a new one [s]."""
+UNNOTICED: Final = 3.0
+"""A lie goes unnoticed for so long at least [s]."""
+RETURNED: Final = 8.0
+"""So long after it came back a channel has just come back [s]."""
 REPEATS: Final = 2.0
 """A reading that is the same to the bit for so long is a copy, and has no noise of its own [s]."""
 COPY_DOUBT: Final = 0.4
@@ -94,6 +98,8 @@ class Testimony:
         How often it was silenced.
     surprises, surprised, worst : int, float, float
         Surprising readings in a row, since when [s], and the largest z' S^-1 z of them.
+    began : float
+        When it spoke first, or again after it had long not spoken [s].
     insisted : float
         For how long it had surprised the filter when it was believed against it last [s].
     proved : float
@@ -113,6 +119,7 @@ class Testimony:
     surprised: float = math.inf
     worst: float = 0.0
     insisted: float = 0.0
+    began: float = -math.inf
     proved: float = -math.inf
     logged: Array = field(default_factory=lambda: np.zeros(0))
     past: Increments = field(default_factory=lambda: Increments(0))
@@ -155,6 +162,33 @@ class Testimony:
         self.surprises, self.surprised, self.worst = 0, time, 0.0
         return True
 
+    def silence(self, time: float) -> Ruling:
+        """What it says now is known for a lie.
+
+        Parameters
+        ----------
+        time : float
+            [s]
+
+        Returns
+        -------
+        str
+            "silence".
+        """
+        if self.heard:
+            self.silent = self.follows = time
+        return "silence"
+
+    @property
+    def lying(self) -> float:
+        """Since when what a silenced channel said is not to be trusted, at the latest [s].
+
+        From a while before it was found out, or from where it began to repeat itself; all, if it had just
+        come back.
+        """
+        last = min(self.silent - UNNOTICED, self.since if self.since < self.silent else math.inf)
+        return min(last, self.began) if self.silent - self.began < RETURNED else last
+
     def hear(
         self,
         said: Said,
@@ -188,6 +222,7 @@ class Testimony:
         if said.time - self.past.last > FORGETS:
             fresh = type(self)(self.size, self.patience, lies=self.lies)
             vars(self).update(vars(fresh))
+            self.began = said.time
         odd = self._odd(said, slack) or accused
         if odd:
             self.past.forget()
