@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from gapless.fold.settings import Settings
 from gapless.fold.state import State
 from gapless.measurements.base import Observation
@@ -33,7 +35,8 @@ def observed(state: State, settings: Settings, reading: Reading) -> Observation:
     observation = sensor.observe(belief, reading)
     if reading.channel == "position":
         rests = state.clock - state.heard.get("zero_velocity", -math.inf) < STILL
-        return observation._replace(R=observation.R * hearing.resting(reading.time, rests))
+        r = observation.R * hearing.resting(reading.time, rests)
+        return observation._replace(R=r + hearing.probation(reading) * np.eye(len(r)))
     if reading.channel != "odometer":
         return observation
     back, h = sensor.observe(belief, reading._replace(value=-reading.value)), observation.H

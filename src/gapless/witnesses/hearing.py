@@ -52,6 +52,8 @@ RADIUS: Final = 6.371e6
 """Of the earth, for differences of seconds [m]."""
 NOWHERE: Final = np.zeros(3)
 """Fixes are where the filter is."""
+PROBATION: Final = 20.0
+"""How far off a receiver may be when it comes back [m]."""
 SURE: Final = 2.0
 """A silence for so long is no accident [s]."""
 FAR: Final = 10.0
@@ -310,6 +312,24 @@ class Hearing:
         silenced = place is not None and not place.heard  # one that was silenced must fit by its own word
         return 1.0 + (time - self.stood) / SHARED if rests and not silenced else 1.0
 
+    def probation(self, reading: Reading) -> float:
+        """Variance on top of that of a fix: a receiver that comes back may be far off, and glide.
+
+        Parameters
+        ----------
+        reading : Reading
+            A position.
+
+        Returns
+        -------
+        float
+            Of some seconds' worth of fixes [m^2]; 0 but for these.
+        """
+        mine = self.channels.get("position")
+        if mine is None or not mine.returning(reading.time):
+            return 0.0
+        return PROBATION**2 / min(reading.interval, 1.0)
+
     def _metres(self, reading: Reading) -> Array:
         """A position in metres from the first one; only differences count."""
         if self.origin is None:
@@ -346,7 +366,8 @@ class Hearing:
         if channel == "position":
             speed = self.channels.get("velocity")
             lied = speed is not None and time - speed.silent > ACCUSED and not speed.following(time)
-            return self.strayed, False, lied and time - self.story.since > ACCUSED
+            glides = self.story.torn and self.channels["position"].returning(time)
+            return self.strayed, False, glides or (lied and time - self.story.since > ACCUSED)
         place = self.channels.get("position")
         if channel == "velocity" and place is not None and not place.following(time):
             return True, True, False  # one receiver: it does not know its speed while its place stands about

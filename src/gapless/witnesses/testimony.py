@@ -100,6 +100,8 @@ class Testimony:
         Surprising readings in a row, since when [s], and the largest z' S^-1 z of them.
     began : float
         When it spoke first, or again after it had long not spoken [s].
+    returned : bool
+        Whether it had spoken before that.
     insisted : float
         For how long it had surprised the filter when it was believed against it last [s].
     proved : float
@@ -120,6 +122,7 @@ class Testimony:
     worst: float = 0.0
     insisted: float = 0.0
     began: float = -math.inf
+    returned: bool = False
     proved: float = -math.inf
     logged: Array = field(default_factory=lambda: np.zeros(0))
     past: Increments = field(default_factory=lambda: Increments(0))
@@ -161,6 +164,22 @@ class Testimony:
         self.logged, self.since = logged, time
         self.surprises, self.surprised, self.worst = 0, time, 0.0
         return True
+
+    def returning(self, time: float) -> bool:
+        """Whether it has just come back from a silence of its own.
+
+        Parameters
+        ----------
+        time : float
+            [s]
+
+        Returns
+        -------
+        bool
+        """
+        if time - self.past.last > FORGETS:
+            return self.past.n > 0
+        return self.returned and time - self.began < RETURNED
 
     def silence(self, time: float) -> Ruling:
         """What it says now is known for a lie.
@@ -220,9 +239,9 @@ class Testimony:
             "use", "silence" or "believe": the filter is what is wrong.
         """
         if said.time - self.past.last > FORGETS:
-            fresh = type(self)(self.size, self.patience, lies=self.lies)
+            spoke = self.past.n > 0
+            fresh = type(self)(self.size, self.patience, lies=self.lies, began=said.time, returned=spoke)
             vars(self).update(vars(fresh))
-            self.began = said.time
         odd = self._odd(said, slack) or accused
         if odd:
             self.past.forget()
