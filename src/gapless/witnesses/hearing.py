@@ -142,7 +142,7 @@ class Hearing:
         if channel == "position":  # what drifts off while the car stands is the receiver, until it fits
             self.strayed = not fits and (self.strayed or reading.time - self.rested[1] < LATELY)
         slack, suspected = self._slack(channel, belief), self._suspected(channel)
-        ruling = mine.hear(said, slack, *self._against(channel, reading.time, o.z, belief), suspected)
+        ruling = mine.hear(said, slack, *self._against(said, channel, o.z, belief), suspected)
         if channel == "velocity":
             ruling = self._turned(said, ruling)
         if known:
@@ -358,11 +358,12 @@ class Hearing:
         said = math.hypot(*reading.value[:2]) if reading.channel == "velocity" else abs(reading.value[0])
         return said < RESTS and math.hypot(*belief.v_n[:2]) > DRIVES
 
-    def _against(self, channel: str, time: float, z: Array, belief: Belief) -> tuple[bool, bool, bool]:
+    def _against(self, said: Said, channel: str, z: Array, belief: Belief) -> tuple[bool, bool, bool]:
         """Whether others are with the filter against one that is heard, against one that was silenced.
 
         And whether it is a position that tells the story of velocities that were silenced.
         """
+        time = said.time
         if channel == "position":
             speed = self.channels.get("velocity")
             lied = speed is not None and time - speed.silent > ACCUSED and not speed.following(time)
@@ -374,7 +375,9 @@ class Hearing:
         if channel == "velocity" and self.story.torn:
             return True, True, False
         others = any(self._believed(name, time) for name in PATIENCE if name != channel)
-        return others and (channel == "odometer" or self._rolled(time, z, belief)), others, False
+        if channel == "odometer":
+            return others or self.channels[channel].leapt(said.nis), others, False
+        return others and self._rolled(time, z, belief), others, False
 
     def _rolled(self, time: float, z: Array, belief: Belief) -> bool:
         """Whether a velocity is about another speed, mostly, and wheels that turn do not see it."""

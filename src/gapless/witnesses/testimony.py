@@ -30,6 +30,8 @@ COPY_SHARE: Final = 0.15
 
 INSISTS: Final = 2.5
 """What follows the motion and surprises the filter for so long, without a break, is right [s]."""
+GROWS: Final = 2.5
+"""What a force that was none does to the surprises of a velocity, while they are believed [1]."""
 KNOWN: Final = 2.0
 """By so much longer for each time that it was silenced: a receiver that lied before may do so again."""
 WANES: Final = 0.6
@@ -96,8 +98,8 @@ class Testimony:
         Since when it has repeated itself to the bit [s].
     lies : int
         How often it was silenced.
-    surprises, surprised, worst : int, float, float
-        Surprising readings in a row, since when [s], and the largest z' S^-1 z of them.
+    surprises, surprised, worst, first : int, float, float, float
+        Surprising readings in a row, since when [s], the largest z' S^-1 z of them, and the first.
     began : float
         When it spoke first, or again after it had long not spoken [s].
     returned : bool
@@ -120,6 +122,7 @@ class Testimony:
     surprises: int = 0
     surprised: float = math.inf
     worst: float = 0.0
+    first: float = 0.0
     insisted: float = 0.0
     began: float = -math.inf
     returned: bool = False
@@ -164,6 +167,20 @@ class Testimony:
         self.logged, self.since = logged, time
         self.surprises, self.surprised, self.worst = 0, time, 0.0
         return True
+
+    def leapt(self, nis: float) -> bool:
+        """Whether its surprises began as large as they are: what was felt wrongly grows.
+
+        Parameters
+        ----------
+        nis : float
+            z' S^-1 z now.
+
+        Returns
+        -------
+        bool
+        """
+        return self.surprises > 0 and nis < GROWS * self.first
 
     def returning(self, time: float) -> bool:
         """Whether it has just come back from a silence of its own.
@@ -277,6 +294,7 @@ class Testimony:
         if said.fits or self.surprised == math.inf:
             self.surprises, self.surprised, self.worst = 0, said.time, 0.0
             return "use"
+        self.first = said.nis if self.surprises == 0 else self.first
         self.surprises, self.worst = self.surprises + 1, max(self.worst, said.nis)
         patience = INSISTS * (1.0 + KNOWN * min(self.lies, 5))
         if self.surprises < OFTEN or said.time - self.surprised < patience:
