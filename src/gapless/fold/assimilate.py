@@ -75,7 +75,8 @@ def assimilate(
     if reading is not None:
         ruling = _heard(state, settings, reading, o, nis, journal)
     elif channel == "zero_velocity":
-        drift = state.hearing.drifts(time, o.z[3:], b)
+        known = np.sqrt(b.P.diagonal()[9:12])
+        drift = state.hearing.rest.drifts(time, o.z[3:], known, state.hearing.channels.seen(time))
         if drift is not None:
             b.drift(drift)
             journal.moved(time, "gyro", float(np.linalg.norm(drift)))
@@ -104,8 +105,12 @@ def assimilate(
     journal.innovation(channel, time, o.z, s, nis, _factor(verdict.r, o.R))
     _process(state, settings, verdict)
     if verdict.widen:
-        if ruling == "believe" and channel == "odometer" and not (state.lost or state.hearing.seen(time)):
-            _felt_wrongly(state, o.z, state.hearing.channels[channel].insisted, time, journal)
+        if (
+            ruling == "believe"
+            and channel == "odometer"
+            and not (state.lost or state.hearing.channels.seen(time))
+        ):
+            _felt_wrongly(state, o.z, state.hearing.channels.of[channel].insisted, time, journal)
         b.widen(o.H, o.z)
         if channel == "position":
             _find_astray(state, settings, time, o.z)
@@ -143,7 +148,7 @@ def _heard(
     bound = soft_bound(o.z.size)
     ruling = state.hearing.hear(reading, o, nis, bound, state.belief)
     journal.heard(reading.channel, reading.time, ruling)
-    if state.hearing.beside_the_road(reading.time):
+    if state.hearing.channels.beside_the_road(reading.time):
         _lose(state, settings)
         return "believe"
     return ruling
@@ -151,11 +156,11 @@ def _heard(
 
 def _slips(state: State, z: Array, since: float, time: float, journal: Journal) -> None:
     """Doubt how the box sits in the car; or, where nobody sees the car move, all that it felt of late."""
-    if state.hearing.seen(time):
+    if state.hearing.channels.seen(time):
         journal.knock(time, state.belief.remount(z), state.box)
         return
     _felt_wrongly(state, z, since, time, journal)
-    state.hearing.acquit("odometer")
+    state.hearing.channels.acquit("odometer")
 
 
 def _felt_wrongly(state: State, z: Array, since: float, time: float, journal: Journal) -> None:
@@ -175,7 +180,7 @@ def _turn(state: State, z: Array, journal: Journal, time: float) -> None:
         turn = about(c[2], angle)
         state.box = turn if state.box is None else turn @ state.box
         journal.knock(time, angle, state.box)
-        state.hearing.moved = time
+        state.hearing.channels.moved = time
         angle = 0.0
     else:
         journal.moved(time, "heading", angle)

@@ -82,7 +82,7 @@ def _knocked(state: State, settings: Settings, journal: Journal, jolt: Jolt) -> 
     state.box = jolt.turn if state.box is None else jolt.turn @ state.box
     state.belief.knocked(jolt.turn, jolt.since, jolt.gained, settings.ceiling)
     state.hearing.forget()
-    state.hearing.moved = state.clock
+    state.hearing.channels.moved = state.clock
     for bridge in state.bridges:
         bridge.lost()
     journal.knock(state.clock - jolt.since, jolt.angle, state.box)

@@ -35,8 +35,8 @@ def observed(state: State, settings: Settings, reading: Reading) -> Observation:
     observation = sensor.observe(belief, reading)
     if reading.channel == "position":
         rests = state.clock - state.heard.get("zero_velocity", -math.inf) < STILL
-        r = observation.R * hearing.resting(reading.time, rests)
-        return observation._replace(R=r + hearing.probation(reading) * np.eye(len(r)))
+        r = observation.R * hearing.rest.shared(reading.time, rests, hearing.channels.silenced("position"))
+        return observation._replace(R=r + hearing.channels.probation(reading) * np.eye(len(r)))
     if reading.channel != "odometer":
         return observation
     back, h = sensor.observe(belief, reading._replace(value=-reading.value)), observation.H

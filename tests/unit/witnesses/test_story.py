@@ -19,12 +19,11 @@ def told(story, times, place, v_n):
     return np.array(torn)
 
 
-@settings(deadline=None)  # the first example compiles a kernel
 @given(
     st.lists(st.tuples(st.floats(-6.0, 6.0), st.floats(-6.0, 6.0)), min_size=10, max_size=40),
     st.integers(0, 2**32 - 1),
 )
-@settings(max_examples=50)
+@settings(max_examples=50, deadline=None)  # the first example compiles a kernel
 def test_an_honest_receiver_tells_one_for_any_motion(accelerations, seed):
     """Velocities wrong by LAXITY, positions by half of DOUBT sqrt(2) deviations: the bound itself.
 
