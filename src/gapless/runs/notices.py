@@ -35,7 +35,7 @@ NAMES: Final = {
     "odometer": "the odometer's readings",
     "nonholonomic": "the constraint to the car's wheels",
 }
-FIRST: Final = ("anew", "turned", "leaned", "silenced", "believed", "drifted", "heading", "surprised")
+FIRST: Final = ("anew", "turned", "leaned", "silenced", "believed", "drifted", "felt", "heading", "surprised")
 """What is told one by one before the rest, where there is too much of it."""
 
 
@@ -77,7 +77,7 @@ def noticed(evidence: Evidence) -> tuple[Notice, ...]:
     tuple of Notice
         Not yet grouped; see `grouped`.
     """
-    kinds = (_silenced, _believed, _turned, _leaned, _headings, _drifted, _anew, _surprised)
+    kinds = (_silenced, _believed, _turned, _leaned, _headings, _drifted, _felt, _anew, _surprised)
     found = sorted(chain.from_iterable(kind(evidence) for kind in kinds), key=lambda n: n.start)
     return tuple(_rounded(n) for n in found)
 
@@ -210,6 +210,15 @@ def _drifted(e: Evidence) -> Iterator[Notice]:
         at, size = group[0] - e.start, max(size for t, size in moves if t in group)
         text = f"a gyro's zero had moved by {size / DEG:.1f} deg/s when the car stood at {at:.0f} s"
         yield Notice(at, at, "gyro", text, "drifted", 0.0, size)
+
+
+def _felt(e: Evidence) -> Iterator[Notice]:
+    """Forces that were none."""
+    moves = [(t, size) for t, what, size in e.journal.moves if what == "force"]
+    for group in _incidents([t for t, _ in moves]):
+        at, size = group[0] - e.start, max(size for t, size in moves if t in group)
+        text = f"accelerometers not believed at {at:.0f} s: a force of {size:.1f} m/s2 was felt that wheels deny"
+        yield Notice(at, at, "imu", text, "felt", 0.0, size)
 
 
 def _anew(e: Evidence) -> Iterator[Notice]:

@@ -76,6 +76,8 @@ def _clauses(notices: tuple[Notice, ...]) -> Iterator[str]:
         yield "the filter had to begin anew"
     if moved := [n.size for n in notices if n.kind == "drifted"]:
         yield f"a gyro's zero moved by {max(moved) / DEG:.1f} deg/s"
+    if any(n.kind == "felt" for n in notices):
+        yield "a force was felt that wheels deny"
     if headings := [n.size for n in notices if n.kind == "heading"]:
         yield f"the heading was off by {max(headings) / DEG:.0f} deg"
     yield from _believed([n for n in notices if n.kind == "believed"])

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import gapless as gp
-from gapless.fold.journal import Journal
+from gapless.fold.journal import Journal, Knock
 from gapless.inertial.layout import Layout
 from gapless.runs.leans import leans
 from gapless.runs.notices import MOST, Evidence, grouped, noticed
@@ -140,11 +140,13 @@ def test_small_beliefs_of_a_channel_are_one_notice():
 
 def test_what_moved_is_one_incident():
     (box,) = noticed(
-        made(knocks=[(START + 50.0, 3 * DEG), (START + 60.0, -25 * DEG), (START + 65.0, 9 * DEG)])
+        made(knocks=[Knock(START + t, a * DEG, None) for t, a in ((50.0, 3), (60.0, -25), (65.0, 9))])
     )
     assert "turned by about 25 deg at 60 s" in box.text
     (zero,) = noticed(made(moves=[(START + 50.0, "gyro", 1.4 * DEG), (START + 60.0, "gyro", 0.3 * DEG)]))
     assert "a gyro's zero had moved by 1.4 deg/s when the car stood at 50 s" in zero.text
+    (force,) = noticed(made(moves=[(START + 50.0, "force", 2.4)]))
+    assert "accelerometers not believed at 50 s: a force of 2.4 m/s2" in force.text
 
 
 def test_a_box_whose_gyros_felt_it_turn_leans_for_good():
