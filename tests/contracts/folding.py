@@ -116,7 +116,7 @@ def rows(navigator: Navigator, start: float = -np.inf, end: float = np.inf) -> l
 def noticed(navigator: Navigator, end: float = np.inf) -> tuple[list[object], ...]:
     """Rulings, knocks and alignments before a time."""
     j = navigator.journal
-    return tuple([x for x in found if x[0] < end] for found in (j.rulings, j.knocks, j.alignments))
+    return tuple([x for x in found if x[0] < end] for found in (j.rulings, [k[:2] for k in j.knocks], j.alignments))
 
 
 def heard(navigator: Navigator, skip: dict[str, int] | None = None) -> dict[str, list[tuple[object, ...]]]:

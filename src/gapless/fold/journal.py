@@ -108,9 +108,8 @@ class Journal:
         nis, factor : float
             As in `Innovations`.
         """
-        if time <= self.latest.get(channel, -math.inf):
+        if not self._news(channel, time):
             return
-        self.latest[channel] = time
         c = self.channels.setdefault(channel, _Channel())
         c.time.append(time)
         c.z.append(z)
@@ -164,7 +163,7 @@ class Journal:
         size : float
             By how much.
         """
-        if not self.moves or time > self.moves[-1][0]:
+        if self._news("moves", time):
             self.moves.append((time, what, size))
 
     def align(self, time: float, evidence: str) -> None:
@@ -175,8 +174,15 @@ class Journal:
         time : float
         evidence : str
         """
-        if not self.alignments or time > self.alignments[-1][0]:
+        if self._news("alignments", time):
             self.alignments.append((time, evidence))
+
+    def _news(self, what: str, time: float) -> bool:
+        """Whether nothing so late was written down of it, here or where a fork began."""
+        if time <= self.latest.get(what, -math.inf):
+            return False
+        self.latest[what] = time
+        return True
 
     def mark(self) -> Any:
         """Where the journal stands, for `rewind`.

@@ -15,6 +15,7 @@ from gapless.filters.stamp_doubt import StampDoubt
 from gapless.fold.assimilate import assimilate
 from gapless.fold.begin import begin
 from gapless.fold.box import before_box, in_box, watch
+from gapless.fold.holes import gap
 from gapless.fold.journal import Journal
 from gapless.fold.manner import Manner
 from gapless.fold.observed import observed
@@ -269,7 +270,7 @@ class Navigator:
         for stretch in without_holes(block):
             silent = parted(state.clock, stretch)
             if silent > GAP:
-                self._gap(float(stretch.time[0] - stretch.dt[0]))
+                gap(state, self.settings, self.tape, float(stretch.time[0] - stretch.dt[0]))
             elif silent:
                 self._bridge(state.lately.across(state.clock, stretch.rows(0, 1)))
             self._go(stretch)
@@ -346,28 +347,6 @@ class Navigator:
         """Sample after which a row is due, where rows come more often than ticks."""
         rows = block.time[first:last]
         return min(last, first + int(np.searchsorted(rows, self._state.next_row - EPS)) + 1)
-
-    def _gap(self, begin: float) -> None:
-        """The IMU was silent for long: little is known of the motion; what is constant is kept.
-
-        Navigation goes on in doubt of its heading, which is set aside while nothing is heard that has a
-        direction. Then, until a course is heard, constraints that need one rest.
-        """
-        state = self._state
-        while state.pending and state.pending[0].time <= begin:
-            state.pending.pop(0)
-        state.hearing.forget()
-        state.aligner = self.settings.aligner.copy()
-        if state.aligned:
-            state.lose_track(begin)
-            for bridge in state.bridges:
-                bridge.lost()
-            for constraint in state.constraints.values():
-                constraint.lost()
-            if self.tape is not None:
-                self.tape.missed(begin - state.clock)
-        state.lately.forget()
-        state.clock = begin
 
     def _tick(self) -> None:
         state, m = self._state, self._state.belief.memory

@@ -217,7 +217,8 @@ def _felt(e: Evidence) -> Iterator[Notice]:
     moves = [(t, size) for t, what, size in e.journal.moves if what == "force"]
     for group in _incidents([t for t, _ in moves]):
         at, size = group[0] - e.start, max(size for t, size in moves if t in group)
-        text = f"accelerometers not believed at {at:.0f} s: a force of {size:.1f} m/s2 was felt that wheels deny"
+        what = f"a force of {size:.1f} m/s2 was felt that wheels deny"
+        text = f"accelerometers not believed at {at:.0f} s: {what}"
         yield Notice(at, at, "imu", text, "felt", 0.0, size)
 
 

@@ -79,8 +79,8 @@ class Notice:
     text : str
         One clause, with its times.
     kind : str
-        "silenced", "believed", "turned", "leaned", "heading", "drifted", "felt", "anew", "surprised"; "more" for the
-        rest of many.
+        "silenced", "believed", "turned", "leaned", "heading", "drifted", "felt", "anew", "surprised"; "more"
+        for the rest of many.
     lasting : float
         For how long, all told [s]; 0 for what happened in a moment.
     size : float
