@@ -42,7 +42,7 @@ FAULTY = {
         ("box-knocked-over", 70.0, 60.0, np.inf),
         ("jumps", 25.0, 90.0, 98.0),
         ("gyro-leaps", 2.5, 100.0, np.inf),
-        ("box-turned", 35.0, 133.0, np.inf),
+        ("box-turned", 60.0, 133.0, np.inf),
     ),
 }
 """Kind, size in its unit, from and until [s]; each kind of ruling is in one of them."""
@@ -116,7 +116,9 @@ def rows(navigator: Navigator, start: float = -np.inf, end: float = np.inf) -> l
 def noticed(navigator: Navigator, end: float = np.inf) -> tuple[list[object], ...]:
     """Rulings, knocks and alignments before a time."""
     j = navigator.journal
-    return tuple([x for x in found if x[0] < end] for found in (j.rulings, [k[:2] for k in j.knocks], j.alignments))
+    return tuple(
+        [x for x in found if x[0] < end] for found in (j.rulings, [k[:2] for k in j.knocks], j.alignments)
+    )
 
 
 def heard(navigator: Navigator, skip: dict[str, int] | None = None) -> dict[str, list[tuple[object, ...]]]:

@@ -114,6 +114,7 @@ def test_a_filter_that_is_beyond_correction_begins_anew(settled):
     """Upside down, with a gyro bias of half a turn in six seconds, and sure of both; fixes go on."""
     navigator, log = settled
     wrecked = navigator.fork()
+    wrecked._past.entries.clear()  # what it remembers is sound
     wrecked.belief.x[6:10] = [0.0, 0.6, 0.8, 0.0]
     wrecked.belief.x[10:13] = 0.5
     fold(wrecked, events(log, {}))

@@ -214,12 +214,12 @@ class Channels:
         return others and self._rolled(time, z, belief), others, False
 
     def _rolled(self, time: float, z: Array, belief: Belief) -> bool:
-        """Whether a velocity is about another speed, mostly, and wheels that turn do not see it."""
+        """Whether wheels that turn, and are believed, turn at another speed than a velocity says."""
         wheels = self.of.get("odometer")
         if wheels is None or not self.believed("odometer", time) or wheels.copies(time):
             return False
-        v = belief.v_n[:2]
-        return abs(math.hypot(*(v + z[:2])) - math.hypot(*v)) > 0.5 * math.hypot(*z[:2])
+        speed = math.hypot(*(belief.v_n[:2] + z[:2]))
+        return abs(speed - abs(float(wheels.logged[0]))) > 0.5 * math.hypot(*z[:2])
 
     def believed(self, channel: str, time: float) -> bool:
         """Whether a channel is heard, and has just fitted.

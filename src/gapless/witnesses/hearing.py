@@ -108,6 +108,7 @@ class Hearing:
         said = Said(reading.time, reading.value, raw, value, var, fits, nis, self._rests(reading, belief))
         if channel == "position":  # what drifts off while the car stands is the receiver, until it fits
             self.strayed = not fits and (self.strayed or self.rest.lately(reading.time))
+        silenced = not mine.heard
         against = self.channels.against(said, channel, o.z, belief, self.strayed)
         ruling = mine.hear(
             said, self.channels.slack(channel, belief), *against, self.channels.suspected(channel)
@@ -121,6 +122,8 @@ class Hearing:
         if fits and ruling == "use":
             self.channels.fitted[channel] = reading.time
         if channel == "position":
+            if silenced and mine.heard:
+                self.channels.story.forget()
             doubtful = ruling == "silence" and mine.follows < reading.time
             self.offset = o.z.copy() if doubtful else NOWHERE
         return ruling
@@ -196,8 +199,9 @@ class Hearing:
         """A position in metres from the first one; only differences count."""
         if self.origin is None:
             self.origin = reading.value
-        step = (reading.value - self.origin) * RADIUS
-        return np.array([step[0], step[1] * math.cos(reading.value[0]), self.origin[2] - reading.value[2]])
+        north, east, up = (reading.value - self.origin).tolist()
+        east = math.remainder(east, 2.0 * math.pi) * math.cos(reading.value[0])
+        return np.array([RADIUS * north, RADIUS * east, -up])
 
     def _rests(self, reading: Reading, belief: Belief) -> bool:
         """Whether it says that the car stands where the filter drives."""

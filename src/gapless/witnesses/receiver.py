@@ -116,7 +116,7 @@ class Story:
             Of its noise [m].
         """
         if time - self.time > UNHEARD:
-            self.torn, self.since, self.n = False, math.inf, 0
+            self.forget()
             return
         here = np.array([time, *place, *(self.way + (time - self.time) * self.v_n)])
         some, torn, drove = ways(self.rows, self.n, here, DOUBT * math.sqrt(2.0) * sd)
@@ -130,6 +130,10 @@ class Story:
                 self.n -= 1
             rows[self.n] = here
             self.rows, self.n = rows, self.n + 1
+
+    def forget(self) -> None:
+        """What was torn is explained: the places so far were not believed."""
+        self.torn, self.since, self.n = False, math.inf, 0
 
     def copy(self) -> Self:
         """An independent copy."""
