@@ -159,8 +159,9 @@ def _slips(state: State, z: Array, since: float, time: float, journal: Journal) 
     if state.hearing.channels.seen(time):
         journal.knock(time, state.belief.remount(z), state.box)
         return
-    _felt_wrongly(state, z, since, time, journal)
-    state.hearing.channels.acquit("odometer")
+    if state.hearing.channels.rolls_otherwise(time):  # one alone may slip
+        _felt_wrongly(state, z, since, time, journal)
+        state.hearing.channels.acquit("odometer")
 
 
 def _felt_wrongly(state: State, z: Array, since: float, time: float, journal: Journal) -> None:

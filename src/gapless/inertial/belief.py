@@ -280,7 +280,7 @@ class Belief:
         since : float
             In so many seconds.
         """
-        n, p, size = self.layout.n, self.P, max(off / since, 0.5)
+        n, p, size = self.layout.n, self.P, off / since
         for axis, (tilted, by) in enumerate(((7, -1.0), (6, 1.0), (8, 0.0))):
             u = np.zeros(n)  # psi x f for an attitude that is off by psi
             u[axis], u[3 + axis], u[tilted] = 0.5 * since**2, since, by / GRAVITY

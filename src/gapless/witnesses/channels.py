@@ -97,6 +97,23 @@ class Channels:
         """
         return channel in self.of and not self.of[channel].heard
 
+    def rolls_otherwise(self, time: float) -> bool:
+        """Whether wheels that turn do not agree with the filter.
+
+        Parameters
+        ----------
+        time : float
+            [s]
+
+        Returns
+        -------
+        bool
+        """
+        wheels = self.of.get("odometer")
+        if wheels is None or wheels.copies(time):
+            return False
+        return not wheels.heard or wheels.surprises > 0
+
     def acquit(self, channel: str) -> None:
         """Hear a channel again, for it was the filter that was wrong.
 
