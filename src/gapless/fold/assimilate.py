@@ -81,11 +81,12 @@ def assimilate(
             b.drift(drift)
             journal.moved(time, "gyro", float(np.linalg.norm(drift)))
             nis, s, hp = assess(b.p, ROW, n, o.z, o.H, o.R)
-    elif channel == "nonholonomic" and (
-        since := state.hearing.in_vain(channel, time, nis <= soft_bound(o.z.size))
-    ):
-        _slips(state, o.z, since, time, journal)
-        nis, s, hp = assess(b.p, ROW, n, o.z, o.H, o.R)
+    elif channel == "nonholonomic":
+        since, news = state.hearing.in_vain(channel, time, nis <= soft_bound(o.z.size))
+        if news and _slips(state, o.z, since, time, journal):
+            nis, s, hp = assess(b.p, ROW, n, o.z, o.H, o.R)
+        elif since and not state.hearing.channels.seen(time):
+            ruling = "silence"
     if ruling == "turn":
         _turn(state, o.z, journal, time)
     if ruling in ("believe", "turn"):
@@ -154,14 +155,19 @@ def _heard(
     return ruling
 
 
-def _slips(state: State, z: Array, since: float, time: float, journal: Journal) -> None:
-    """Doubt how the box sits in the car; or, where nobody sees the car move, all that it felt of late."""
+def _slips(state: State, z: Array, since: float, time: float, journal: Journal) -> bool:
+    """Doubt how the box sits in the car; or, where nobody sees the car move, all that it felt of late.
+
+    There, a constraint alone is not believed: nobody knows whether the car slips or the box was moved.
+    """
     if state.hearing.channels.seen(time):
         journal.knock(time, state.belief.remount(z), state.box)
-        return
-    if state.hearing.channels.rolls_otherwise(time):  # one alone may slip
+        return True
+    if state.hearing.channels.rolls_otherwise(time):
         _felt_wrongly(state, z, since, time, journal)
         state.hearing.channels.acquit("odometer")
+        return True
+    return False
 
 
 def _felt_wrongly(state: State, z: Array, since: float, time: float, journal: Journal) -> None:

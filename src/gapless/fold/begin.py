@@ -36,6 +36,7 @@ def begin(start: Start, state: State, settings: Settings, journal: Journal, tape
     state.hearing.forget()
     first = state.lost or not state.aligned
     if first:
+        state.hearing.seat.forget()
         _first(start, state, settings)
     evidence = start.evidence
     if state.lost:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from gapless.fold.journal import Journal
@@ -11,7 +13,8 @@ from gapless.inertial import propagate as at
 from gapless.inertial.layout import ROW
 from gapless.trip.events import ImuBlock, Motion
 from gapless.trip.recording import Array
-from gapless.witnesses.jolt import Jolt, upright
+from gapless.witnesses.jolt import upright
+from gapless.witnesses.seat import LASTS
 
 
 def in_box(block: ImuBlock, box: Array | None) -> ImuBlock:
@@ -74,15 +77,21 @@ def watch(state: State, settings: Settings, journal: Journal, motion: Motion) ->
     tilt, c, force = upright(b.p, ROW, b.x, motion.rate, motion.force)
     jolt = state.hearing.jolts.feel(force, c, tilt, motion.dt)
     if jolt is not None and not state.lost:  # else it is the attitude that leans
-        _knocked(state, settings, journal, jolt)
+        b.knocked(jolt.turn, jolt.since, jolt.gained, settings.ceiling)
+        _moved(state, journal, jolt.turn, jolt.since, jolt.angle)
+        return
+    speed = math.hypot(*b.v_n[:2].tolist())
+    turn = state.hearing.seat.moved(c, tilt, state.hearing.jolts.lean, speed, motion.rate)
+    if turn is not None and not state.lost:
+        b.reseated(turn, settings.ceiling)
+        _moved(state, journal, turn, LASTS * motion.dt, math.acos(0.5 * (float(np.trace(turn)) - 1.0)))
 
 
-def _knocked(state: State, settings: Settings, journal: Journal, jolt: Jolt) -> None:
-    """What it feels is taken to the axes of before, and doubted."""
-    state.box = jolt.turn if state.box is None else jolt.turn @ state.box
-    state.belief.knocked(jolt.turn, jolt.since, jolt.gained, settings.ceiling)
+def _moved(state: State, journal: Journal, turn: Array, since: float, angle: float) -> None:
+    """What it feels is taken to the axes of before, and what hung on it is doubted."""
+    state.box = turn if state.box is None else turn @ state.box
     state.hearing.forget()
     state.hearing.channels.moved = state.clock
     for bridge in state.bridges:
         bridge.lost()
-    journal.knock(state.clock - jolt.since, jolt.angle, state.box)
+    journal.knock(state.clock - since, angle, state.box)

@@ -319,6 +319,29 @@ class Belief:
                 index = np.arange(blocks[name].start, blocks[name].stop)
                 p[index, index] += share * ceiling[index]
 
+    def reseated(self, turn: Array, ceiling: Array) -> None:
+        """Go on in the former axes of a box whose attitude was known all the time, not so how it sits.
+
+        Parameters
+        ----------
+        turn : ndarray, shape (3, 3)
+            Takes what is felt now to the axes of before.
+        ceiling : ndarray, shape (n,)
+            Variance of each state when nothing is known of it; what is in the box comes back to a share.
+        """
+        self.x[6:10] = attitude.from_matrix(self.C_nb @ turn.T)
+        for at_ in (at.PREV_THETA, at.PREV_VEL):
+            self.memory[at_ : at_ + 3] = turn @ self.memory[at_ : at_ + 3]
+        p, blocks, turned = self.P, self.layout.blocks, np.eye(self.layout.n)
+        for name in ("gyro_bias", "accel_bias"):  # these turn with the box
+            turned[blocks[name], blocks[name]] = turn
+            self.block(name)[:] = turn @ self.block(name)
+        p[:] = turned @ p @ turned.T
+        for name, share in (("gyro_bias", 0.05), ("accel_bias", 0.05), ("mounting", 0.3)):
+            if name in blocks:
+                index = np.arange(blocks[name].start, blocks[name].stop)
+                p[index, index] += share * ceiling[index]
+
     def estimate(self) -> Array:
         """The best state: nominal, with the open-loop error applied to a copy of it.
 

@@ -175,7 +175,10 @@ class Channels:
         if channel == "position":
             p = belief.P
             sd = math.sqrt(max(float(p[3, 3] + p[4, 4]), 0.0))
-            witnessed = self.believed("velocity", belief.time) or self.believed("odometer", belief.time)
+            witnessed = any(
+                self.believed(name, belief.time) and not self.of[name].surprises
+                for name in ("velocity", "odometer")
+            )
             return Slack(3.0 * sd + LAXITY, 0.0 if witnessed else FELT["velocity"])
         return Slack(FELT[channel] * (SUSPECT if self.suspected(channel) < math.inf else 1.0))
 

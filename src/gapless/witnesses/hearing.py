@@ -17,6 +17,7 @@ from gapless.witnesses.askew import SPAN, Askew
 from gapless.witnesses.channels import Channels
 from gapless.witnesses.jolt import Jolts
 from gapless.witnesses.rest import Rest
+from gapless.witnesses.seat import Seat
 from gapless.witnesses.sign import Sign
 from gapless.witnesses.testimony import INSISTS, Ruling, Said, Testimony
 
@@ -67,11 +68,12 @@ class Hearing:
     offset: Array = field(default_factory=lambda: NOWHERE)
     sign: Sign = field(default_factory=Sign)
     jolts: Jolts = field(default_factory=Jolts)
+    seat: Seat = field(default_factory=Seat)
     origin: Array | None = None
     turned: float = 0.0
     strayed: bool = False
     askew: Askew = field(default_factory=Askew)
-    at_odds: dict[str, float] = field(default_factory=dict)
+    at_odds: dict[str, tuple[float, float]] = field(default_factory=dict)
     disowned: dict[str, FoundOut] = field(default_factory=dict)
     lie: FoundOut | None = None
 
@@ -172,8 +174,8 @@ class Hearing:
         self.forget()
         return "turn"
 
-    def in_vain(self, name: str, time: float, fits: bool) -> float:
-        """For how long a constraint has surprised the filter, once that is too long: what it rests on moved.
+    def in_vain(self, name: str, time: float, fits: bool) -> tuple[float, bool]:
+        """For how long a constraint has surprised the filter: what it rests on moved, if that is too long.
 
         Parameters
         ----------
@@ -186,14 +188,18 @@ class Hearing:
 
         Returns
         -------
-        float
-            [s], once; else 0.
+        since : float
+            [s]; 0 where it is not too long.
+        news : bool
+            Whether to do something about it: once in so long.
         """
-        since = self.at_odds.get(name, math.inf)
+        since, told = self.at_odds.get(name, (time, time))
+        if fits or name not in self.at_odds:
+            since = told = time
         long = time - since >= INSISTS
-        if fits or long or since == math.inf:
-            self.at_odds[name] = time
-        return time - since if long and not fits else 0.0
+        news = long and time - told >= INSISTS
+        self.at_odds[name] = since, time if news else told
+        return (time - since if long else 0.0), news
 
     def _metres(self, reading: Reading) -> Array:
         """A position in metres from the first one; only differences count."""
@@ -223,5 +229,5 @@ class Hearing:
         vars(new).update(vars(self))
         new.channels, new.rest = self.channels.copy(), self.rest.copy()
         new.at_odds, new.askew = dict(self.at_odds), self.askew.copy()
-        new.sign, new.jolts = self.sign.copy(), self.jolts.copy()
+        new.sign, new.jolts, new.seat = self.sign.copy(), self.jolts.copy(), self.seat.copy()
         return new

@@ -174,6 +174,11 @@ class Jolts:
         turn = between(felt, -c_nb[2])
         return Jolt(turn, WINDOW * tick, felt - turn @ felt, angle)
 
+    @property
+    def lean(self) -> float:
+        """How far the mean force leans from the vertical [rad]; pi while there is too little of it."""
+        return float(self.memory[PEAK]) if self.memory[FILLED] >= WINDOW else np.pi
+
     def forget(self) -> None:
         """The attitude changed: forces of before lean by another one."""
         self.memory[FILLED] = self.memory[PEAK] = 0.0
