@@ -75,7 +75,7 @@ def watch(state: State, settings: Settings, journal: Journal, motion: Motion) ->
     """
     b = state.belief
     tilt, c, force = upright(b.p, ROW, b.x, motion.rate, motion.force)
-    jolt = state.hearing.jolts.feel(force, c, tilt, motion.dt)
+    jolt = state.hearing.jolts.feel(force, c, tilt, motion.dt, b.v_n)
     if jolt is not None and not state.lost:  # else it is the attitude that leans
         b.knocked(jolt.turn, jolt.since, jolt.gained, settings.ceiling)
         _moved(state, journal, jolt.turn, jolt.since, jolt.angle)

@@ -53,9 +53,15 @@ class Jolt(NamedTuple):
     angle: float
 
 
-PEAK, LENGTH, STEADILY, FILLED, RING = 0, 1, 2, 3, 4
-"""Where in the memory of `lean` there are: the lean a tick ago [rad], how long a force is in steady driving
-[m/s^2], ticks that told it, ticks since the last change of attitude, and their forces."""
+LONG: Final = 40
+"""Ticks of the longer window, in which less is enough."""
+LITTLE: Final = 11.0 * DEG
+"""That: so much of a lean for four seconds, and a box was turned if the force is no longer [rad]."""
+PEAK, CREST, LENGTH, SLOPE, STEADILY, FILLED, RING = 0, 1, 2, 3, 4, 5, 6
+"""Where in the memory of `lean` there are: leans of both windows a tick ago [rad], how long a force is in
+steady driving [m/s^2], the slope then, ticks that told it, ticks since the last change of attitude, and
+their forces."""
+STANDS: Final = np.zeros(3)
 
 
 @kernel
@@ -92,48 +98,87 @@ def upright(p: Array, row: int, x: Array, rate: Array, force: Array) -> tuple[fl
 
 
 @kernel
-def lean(m: Array, c_nb: Array, force: Array, tilt: float) -> tuple[bool, float]:
+def mean_of(m: Array, ticks: int) -> tuple[float, Array]:
+    """Mean force of the last ticks, and how far it leans from the vertical.
+
+    Parameters
+    ----------
+    m : ndarray, shape (RING + 3 * LONG,)
+    ticks : int
+
+    Returns
+    -------
+    angle : float
+        [rad]
+    mean : ndarray, shape (3,)
+        North, east, down [m/s^2].
+    """
+    mean = np.zeros(3)
+    for k in range(ticks):
+        slot = RING + 3 * ((int(m[FILLED]) - 1 - k) % LONG)
+        for i in range(3):
+            mean[i] += m[slot + i] / ticks
+    length = np.sqrt(mean[0] ** 2 + mean[1] ** 2 + mean[2] ** 2)
+    return np.arccos(min(1.0, max(-1.0, -mean[2] / max(length, 1e-9)))), mean
+
+
+@kernel
+def lean(m: Array, c_nb: Array, force: Array, tilt: float, v_n: Array) -> tuple[int, float]:
     """Take in a tick: whether the mean force leans as it does in a box that was turned, and how far.
 
     Parameters
     ----------
-    m : ndarray, shape (RING + 3 * WINDOW,)
+    m : ndarray, shape (RING + 3 * LONG,)
         Changed in place.
     c_nb : ndarray, shape (3, 3)
     force : ndarray, shape (3,)
         Mean specific force in the box [m/s^2].
     tilt : float
         How far the filter may be wrong about the vertical [rad].
+    v_n : ndarray, shape (3,)
+        [m/s]
 
     Returns
     -------
-    turned : bool
+    ticks : int
+        For how many it has leant so; 0 where it does not.
     angle : float
         [rad]
     """
-    slot = RING + 3 * (int(m[FILLED]) % WINDOW)
+    slot = RING + 3 * (int(m[FILLED]) % LONG)
     m[FILLED] += 1.0
     for i in range(3):
         m[slot + i] = c_nb[i, 0] * force[0] + c_nb[i, 1] * force[1] + c_nb[i, 2] * force[2]
     if m[FILLED] < WINDOW:
-        return False, 0.0
-    mean = np.zeros(3)
-    for k in range(WINDOW):
-        for i in range(3):
-            mean[i] += m[RING + 3 * k + i] / WINDOW
+        return 0, 0.0
+    angle, mean = mean_of(m, WINDOW)
     length = np.sqrt(mean[0] ** 2 + mean[1] ** 2 + mean[2] ** 2)
     if not np.isfinite(length + tilt):
-        return False, 0.0
-    angle = np.arccos(min(1.0, max(-1.0, -mean[2] / max(length, 1e-9))))
+        return 0, 0.0
     growing = angle > m[PEAK]
     m[PEAK] = angle
+    along = np.hypot(v_n[0], v_n[1])
     if angle < STEADY:
         m[STEADILY] += 1.0
         m[LENGTH] += max(SLOWLY, 1.0 / m[STEADILY]) * (length - m[LENGTH])
-    leans = angle >= ANGLE + 3.0 * tilt
-    if not leans or growing or m[STEADILY] < KNOWN:  # all of the window must have come after it
-        return False, angle
-    return length - m[LENGTH] <= LONGER * m[LENGTH] * (1.0 / max(np.cos(angle), 0.2) - 1.0), angle
+        if along > 2.0:
+            m[SLOPE] += 5.0 * SLOWLY * (v_n[2] / along - m[SLOPE])
+    if m[STEADILY] < KNOWN:
+        return 0, angle
+    # all of a window must have come after it
+    if angle >= ANGLE + 3.0 * tilt and not growing:
+        longer = length - m[LENGTH]
+        return (WINDOW if longer <= LONGER * m[LENGTH] * (1.0 / max(np.cos(angle), 0.2) - 1.0) else 0), angle
+    if m[FILLED] < LONG:
+        return 0, angle
+    angle, mean = mean_of(m, LONG)
+    growing = angle > m[CREST]
+    m[CREST] = angle
+    if angle < LITTLE + 3.0 * tilt or growing:
+        return 0, angle
+    faster = (mean[0] * v_n[0] + mean[1] * v_n[1]) / max(along, 1.0)  # down a hill, that is downwards too
+    up = faster * m[SLOPE] - mean[2]
+    return (LONG if up < m[LENGTH] * (1.0 - (1.0 - LONGER) * (1.0 - np.cos(angle))) else 0), angle
 
 
 @dataclass
@@ -142,13 +187,13 @@ class Jolts:
 
     Parameters
     ----------
-    memory : ndarray, shape (RING + 3 * WINDOW,)
+    memory : ndarray, shape (RING + 3 * LONG,)
         As `lean` keeps it.
     """
 
-    memory: Array = field(default_factory=lambda: np.zeros(RING + 3 * WINDOW))
+    memory: Array = field(default_factory=lambda: np.zeros(RING + 3 * LONG))
 
-    def feel(self, force: Array, c_nb: Array, tilt: float, tick: float) -> Jolt | None:
+    def feel(self, force: Array, c_nb: Array, tilt: float, tick: float, v_n: Array = STANDS) -> Jolt | None:
         """Take in a tick.
 
         Parameters
@@ -161,18 +206,20 @@ class Jolts:
             How far it may be wrong about the vertical [rad].
         tick : float
             Its length [s].
+        v_n : ndarray, shape (3,)
+            Velocity [m/s].
 
         Returns
         -------
         Jolt or None
         """
-        turned, angle = lean(self.memory, c_nb, force, tilt)
-        if not turned:
+        ticks, angle = lean(self.memory, c_nb, force, tilt, v_n)
+        if not ticks:
             return None
-        felt = c_nb.T @ self.memory[RING:].reshape(WINDOW, 3).mean(axis=0)
+        felt = c_nb.T @ mean_of(self.memory, ticks)[1]
         self.forget()
         turn = between(felt, -c_nb[2])
-        return Jolt(turn, WINDOW * tick, felt - turn @ felt, angle)
+        return Jolt(turn, ticks * tick, felt - turn @ felt, angle)
 
     @property
     def lean(self) -> float:
@@ -181,7 +228,7 @@ class Jolts:
 
     def forget(self) -> None:
         """The attitude changed: forces of before lean by another one."""
-        self.memory[FILLED] = self.memory[PEAK] = 0.0
+        self.memory[FILLED] = self.memory[PEAK] = self.memory[CREST] = 0.0
 
     def copy(self) -> Self:
         """An independent copy."""
