@@ -21,6 +21,8 @@ UNNOTICED: Final = 3.0
 """A lie goes unnoticed for so long at least [s]."""
 RETURNED: Final = 8.0
 """So long after it came back a channel has just come back [s]."""
+MANY, ALIVE = 10, 1.0
+"""No velocity beyond the second [m/s] is the same to the bit so often: noise is in it."""
 REPEATS: Final = 2.0
 """A reading that is the same to the bit for so long is a copy, and has no noise of its own [s]."""
 COPY_DOUBT: Final = 0.4
@@ -96,6 +98,8 @@ class Testimony:
         Since when a silenced channel has followed the motion [s].
     since : float
         Since when it has repeated itself to the bit [s].
+    repeats : int
+        How often in a row.
     lies : int
         How often it was silenced.
     surprises, surprised, worst, first : int, float, float, float
@@ -118,6 +122,7 @@ class Testimony:
     silent: float = math.inf
     follows: float = -math.inf
     since: float = -math.inf
+    repeats: int = 0
     lies: int = 0
     surprises: int = 0
     surprised: float = math.inf
@@ -164,7 +169,7 @@ class Testimony:
         """
         if not self.heard or time - self.past.last >= APART or np.array_equal(logged, self.logged):
             return False
-        self.logged, self.since = logged, time
+        self.logged, self.since, self.repeats = logged, time, 1
         self.surprises, self.surprised, self.worst = 0, time, 0.0
         return True
 
@@ -272,22 +277,27 @@ class Testimony:
             if odd or unproved:
                 self.silent = self.follows = said.time
                 self.lies += odd
-            return "silence" if odd or unproved else self._insists(said, denied)
+            return "silence" if accused or unproved or self._dead(said) else self._insists(said, denied)
         if odd or said.rests or self.copies(said.time):  # a copy follows nothing
             self.follows = said.time
-        return "silence" if accused or unproved else self._again(said, contradicted)
+        return "silence" if odd or unproved else self._again(said, contradicted)
 
     def _odd(self, said: Said, slack: Slack) -> bool:
         """Whether it did not change as was felt."""
         if self.logged.shape != said.logged.shape or (said.logged != self.logged).any():
-            self.since = said.time
-        self.logged = said.logged
+            self.since, self.repeats = said.time, 0
+        self.logged, self.repeats = said.logged, self.repeats + 1
         doubt = DOUBT
         if self.copies(said.time):
-            if not said.fits:
+            if not said.fits or self._dead(said):
                 return True
             doubt, slack = COPY_DOUBT, Slack(COPY_SHARE * slack.rate, COPY_SHARE * slack.bend)
         return self.past.excess(*said.compared, slack, doubt) > 1.0
+
+    def _dead(self, said: Said) -> bool:
+        """Whether it is a velocity that has repeated itself for too often."""
+        many = self.size == 2 and self.repeats > MANY and self.copies(said.time)
+        return many and float(np.hypot(*said.logged[:2])) > ALIVE
 
     def _insists(self, said: Said, denied: bool) -> Ruling:
         """Whether a channel that is heard has surprised the filter for too long to be an accident."""

@@ -9,6 +9,7 @@ from gapless.witnesses.testimony import (
     FORGETS,
     INSISTS,
     KNOWN,
+    MANY,
     REPEATS,
     SETTLED,
     Said,
@@ -99,7 +100,14 @@ def test_what_repeats_itself_is_never_believed(fits):
 def test_bits_that_repeat_where_nothing_moves_are_no_lie():
     """A receiver that holds its place at a traffic light."""
     channel = settled()
-    assert set(hears(channel, (said(t, logged=1.0) for t in times(5.0, 60.0)))) == {"use"}
+    assert set(hears(channel, (said(t, logged=0.0) for t in times(5.0, 60.0)))) == {"use"}
+
+
+def test_a_velocity_that_repeats_itself_is_dead_however_well_it_fits():
+    channel = settled()
+    ruled = hears(channel, (said(t, logged=7.0) for t in times(5.0, 60.0)))
+    assert ruled.index("silence") == pytest.approx(max(REPEATS * RATE, MANY), abs=2)
+    assert set(ruled[ruled.index("silence") :]) == {"silence"}
 
 
 def test_a_copy_has_no_noise_to_hide_behind():
@@ -107,7 +115,7 @@ def test_a_copy_has_no_noise_to_hide_behind():
     for off, ruled in ((0.02, {"use"}), (0.2, {"use", "silence"})):
         # over 8 s 0.16 and 1.6; of noise, 5 sqrt(2) are left to a reading, 0.4 sqrt(2) to a copy
         live = [said(5.0 + t, off * t) for t in times(0.0, REPEATS + 30.0)]
-        copy = [said(5.0 + t, off * t, logged=1.0) for t in times(0.0, REPEATS + 30.0)]
+        copy = [said(5.0 + t, off * t, logged=0.5) for t in times(0.0, REPEATS + 30.0)]
         assert set(hears(settled(), live, Slack(0.0))) == {"use"}
         assert set(hears(settled(), copy, Slack(0.0))) == ruled
 
