@@ -277,10 +277,10 @@ class Testimony:
             if odd or unproved:
                 self.silent = self.follows = said.time
                 self.lies += odd
-            return "silence" if accused or unproved or self._dead(said) else self._insists(said, denied)
+            return "silence" if odd or unproved else self._insists(said, denied)
         if odd or said.rests or self.copies(said.time):  # a copy follows nothing
             self.follows = said.time
-        return "silence" if odd or unproved else self._again(said, contradicted)
+        return "silence" if accused or unproved or self._dead(said) else self._again(said, contradicted)
 
     def _odd(self, said: Said, slack: Slack) -> bool:
         """Whether it did not change as was felt."""
