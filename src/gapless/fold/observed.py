@@ -10,6 +10,8 @@ from gapless.fold.settings import Settings
 from gapless.fold.state import State
 from gapless.measurements.base import Observation
 from gapless.trip.events import Reading
+from gapless.trip.recording import Array
+from gapless.witnesses.hearing import Hearing
 
 STILL = 1.0
 """For so long after the last word of rest a car stands [s]."""
@@ -33,12 +35,19 @@ def observed(state: State, settings: Settings, reading: Reading) -> Observation:
     """
     sensor, belief, hearing = settings.sensors[reading.channel], state.belief, state.hearing
     observation = sensor.observe(belief, reading)
+    if reading.channel == "velocity":
+        return observation._replace(R=observation.R + _probation(hearing, reading, observation))
     if reading.channel == "position":
         rests = state.clock - state.heard.get("zero_velocity", -math.inf) < STILL
         r = observation.R * hearing.rest.shared(reading.time, rests, hearing.channels.silenced("position"))
-        return observation._replace(R=r + hearing.channels.probation(reading) * np.eye(len(r)))
+        return observation._replace(R=r + _probation(hearing, reading, observation))
     if reading.channel != "odometer":
         return observation
     back, h = sensor.observe(belief, reading._replace(value=-reading.value)), observation.H
     hph = float((h @ belief.P @ h.T)[0, 0])
     return hearing.sign.settles(float(reading.value[0]), observation, back, hph)
+
+
+def _probation(hearing: Hearing, reading: Reading, o: Observation) -> Array | float:
+    variance = hearing.channels.probation(reading, o.z)
+    return variance * np.eye(len(o.R)) if variance else 0.0

@@ -23,6 +23,8 @@ AGREED: Final = 2.5
 """A channel that was believed so lately is a witness [s]."""
 LAXITY: Final = 0.3
 """Error of a velocity that is beyond what its deviation says [m/s]."""
+AGREE: Final = 1.0
+"""For so long must places and speeds have told one story [s]."""
 SOON, SETTLES = 3.0, 30.0
 """So soon within this after the box was found to have moved [s]."""
 ACCUSED: Final = 1.5
@@ -142,23 +144,29 @@ class Channels:
         enough = SOON if time - self.moved < SETTLES else LOST
         return time - max(self.story.since, *(one.silent for one in both)) > enough
 
-    def probation(self, reading: Reading) -> float:
-        """Variance on top of that of a fix: a receiver that comes back may be far off, and glide.
+    def probation(self, reading: Reading, z: Array) -> float:
+        """Variance on top of a reading's: who comes back may be as far off as it seems, and glide.
 
         Parameters
         ----------
         reading : Reading
-            A position.
+            A position or a velocity.
+        z : ndarray
+            Its innovation [m] or [m/s].
 
         Returns
         -------
         float
-            Of some seconds' worth of fixes [m^2]; 0 but for these.
+            Of a second's worth of readings [m^2] or [m^2/s^2]; 0 but for these, and of positions once places
+            and speeds have told one story.
         """
-        mine = self.of.get("position")
+        mine, place = self.of.get(reading.channel), reading.channel == "position"
         if mine is None or not mine.returning(reading.time):
             return 0.0
-        return PROBATION**2 / min(reading.interval, 1.0)
+        if place and reading.time - self.story.since >= AGREE:
+            return 0.0
+        least = PROBATION**2 if place else 0.0
+        return (least + 4.0 * float(z[0] ** 2 + z[1] ** 2)) / min(reading.interval, 1.0)
 
     def slack(self, channel: str, belief: Belief) -> Slack:
         """What is left to the filter.

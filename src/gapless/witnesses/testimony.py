@@ -309,7 +309,9 @@ class Testimony:
         patience = INSISTS * (1.0 + KNOWN * min(self.lies, 5))
         if self.surprises < OFTEN or said.time - self.surprised < patience:
             return "use"
-        if said.nis < WANES * self.worst:  # a receiver's mistake passes, a filter's does not by itself
+        if (
+            self.returning(said.time) or said.nis < WANES * self.worst
+        ):  # a receiver's mistake passes, a filter's does not by itself
             return "use"
         self.insisted = said.time - self.surprised
         self.surprises, self.surprised, self.worst = 0, said.time, 0.0
