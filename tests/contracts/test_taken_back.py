@@ -52,8 +52,9 @@ def test_as_if_it_had_never_been_said():
     found = navigated(repeated(), until)
     assert any(ruling == "silence" for _, _, ruling in found.journal.rulings)
     never, kept = navigated(without(since, until), until), navigated(repeated(), until, memory=0.0)
-    assert off(found, never) < 1e-9  # the same arithmetic on the same readings
-    assert off(kept, never) > 0.05  # it had led the filter astray
+    assert off(kept, never) > 0.3  # it had led the filter astray
+    # all that is left of it is a second and a half of positions that were silenced with it
+    assert off(found, never) < 0.1 * off(kept, never)
 
 
 def test_rows_that_were_written_stay():
