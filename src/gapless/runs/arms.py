@@ -183,8 +183,10 @@ def settle(past: Recording, system: System, first: Callable[[System], K]) -> tup
     arm : Arm
     """
     told, known = told_arm(system, past), first(system)
-    if known.span == 0.0 or not _shows(past, system, known.jitter.lasting):
+    if known.span == 0.0 or "lever_arm" in system.filter.states or "position" not in system.sensors:
         return known, Arm(lever_arm(system, past), None, _taken(system, past, None))
+    if not _shows(past, known.jitter.lasting):
+        return known, Arm(told, None, _taken(system, past, None)) if told is not None else _hidden(system)
     armed, then, found = _in_turn(past, system, first, known)
     found = _doubted(past, armed, then, found)
     if found is not None and found.denies(told):
@@ -216,14 +218,14 @@ def _in_turn(
     return armed, known, found
 
 
-def _shows(past: Recording, system: System, uneven: float) -> bool:
-    """Whether fixes are good enough to show an arm, and the recipe does not look for it anyway.
+def _shows(past: Recording, uneven: float) -> bool:
+    """Whether fixes are good enough to show an arm.
 
     Stamps that are uneven for seconds, by `uneven`, move fixes like an arm does.
     """
     gnss = past.gnss
     fixed = np.isfinite(gnss.lla).all(axis=1)
-    if "lever_arm" in system.filter.states or "position" not in system.sensors or not fixed.any():
+    if not fixed.any():
         return False
     stated = float(np.median(gnss.sd_position[fixed, :2].max(axis=1)))
     return math.hypot(stated, uneven * SPEED) < PRECISE
@@ -320,6 +322,17 @@ def _found(system: System, past: Recording, found: Found) -> Decision:
             f"not {_metres(told)} m as {who}, for fixes in turns put it there, {there}; mend what was told"
         )
     return Decision(NAME, _tuple(found.value), "m", "data", evidence, float(found.sd.max()))
+
+
+def _hidden(system: System) -> Arm:
+    """Zero, which nobody told and fixes are too coarse to deny; its doubt is stated."""
+    prior, zero = np.array(system.gnss.lever_arm_sd), np.zeros(3)
+    evidence = (
+        f"none is stated, and fixes are too coarse to show one: zero ± {_metres(prior)} m; its doubt is "
+        "a part of what is stated; state antenna_lever_arm"
+    )
+    decision = Decision(NAME, _tuple(zero), "m", "default", evidence, float(prior.max()))
+    return Arm(zero, None, decision, np.diag(prior**2))
 
 
 def _guessed(system: System, known: Known, found: Found | None) -> Arm:

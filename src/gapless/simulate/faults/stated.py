@@ -64,7 +64,7 @@ def _arm(told: Array) -> Plant:
         arm = size * np.array([chance.choice([-1.0, 1.0]), aside, -0.3])
         had = np.zeros(3) if log.lever_arm is None else log.lever_arm
         right = replace(log, gnss=_at_arm(log, arm), lever_arm=had + arm)
-        wrong = None if not told.any() and not had.any() else had + told * arm
+        wrong = had + told * arm if told.any() else None
         return Pair(replace(right, lever_arm=wrong), right)
 
     return plant
