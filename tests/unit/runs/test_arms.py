@@ -107,7 +107,7 @@ def test_a_receiver_of_metres_has_no_word_on_it():
     log = told(drive(receiver=Receiver(), seconds=100.0), None)
     decided = decide(log, System())
     assert "lever_arm" not in decided.used(System()).filter.states
-    assert not decided.arm.doubt.any()
+    np.testing.assert_allclose(np.sqrt(decided.arm.doubt.diagonal()), System().gnss.lever_arm_sd)
     assert decision(decided).evidence.startswith("none is stated, and fixes are too coarse")
 
 

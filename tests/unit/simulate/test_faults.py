@@ -53,10 +53,9 @@ def test_a_fault_changes_its_sensor_and_nothing_else(kind, drives, planted):
     changed = parts_that_differ(drives[fault.drive], planted[kind].faulted)
     if fault.sensor == "drive":
         assert not changed
-    elif kind == "arm-mirrored":
+    elif fault.sensor == "arm":
         assert changed == {"gnss", "lever_arm"}
-    elif kind == "arm-untold":  # what is told stays what it was
-        assert changed == {"gnss"}
+        assert (planted[kind].faulted.lever_arm is None) == (kind == "arm-untold")
     else:
         allowed = TOUCHES[fault.sensor] | ({"reference"} if kind in TRUTH else set())
         assert TOUCHES[fault.sensor] <= changed <= allowed
