@@ -9,7 +9,8 @@ import numpy as np
 
 from gapless.filters.stamp_doubt import SURE, Doubt
 from gapless.fold.feed import DRIFT
-from gapless.runs.arms import Arm, settle
+from gapless.runs.arm import Arm
+from gapless.runs.arms import settle
 from gapless.runs.clocks import clock_notes, doubt, refuse_strangers
 from gapless.runs.first_pass import FirstPass, Mounting, given
 from gapless.runs.prepare import graded

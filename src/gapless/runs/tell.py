@@ -7,7 +7,7 @@ import numpy as np
 from gapless.errors import AlignmentError
 from gapless.fold.journal import Journal
 from gapless.rehearsal.stage import Rehearsing
-from gapless.runs.arms import at_end
+from gapless.runs.arm import at_end
 from gapless.runs.conduct import Folding
 from gapless.runs.decide import Decided
 from gapless.runs.notices import Evidence, grouped, noticed

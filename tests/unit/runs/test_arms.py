@@ -7,7 +7,7 @@ import pytest
 from msgspec import structs
 
 from gapless.evaluation import score
-from gapless.runs import arms
+from gapless.runs import arm
 from gapless.runs.decide import decide
 from gapless.runs.fuse import fuse
 from gapless.simulate import Receiver, simulate
@@ -94,7 +94,7 @@ def test_what_the_road_does_not_show_is_doubted():
 
 
 def test_a_long_road_that_shows_nothing_keeps_zero_and_says_how_far_it_may_be_off(monkeypatch):
-    monkeypatch.setattr(arms, "SHORT", 0.0)
+    monkeypatch.setattr(arm, "SHORT", 0.0)
     log = told(drive("highway", 110.0), None)
     decided = decide(log, TIMED)
     assert "lever_arm" not in decided.used(TIMED).filter.states
