@@ -132,7 +132,7 @@ class Hearing:
 
     def _found_out(self, channel: str, mine: Testimony, time: float, before: float) -> None:
         """Take back what a receiver said that has been silenced for longer than by an accident."""
-        if mine.silent > before and time - mine.silent >= SURE:
+        if mine.silent > before and time - mine.silent >= SURE and mine.lying < mine.silent:
             self.lie = FoundOut(channel, max(mine.lying, time - FAR), time)
 
     def disown(self, lie: FoundOut) -> None:

@@ -17,6 +17,8 @@ SETTLED: Final = 3.0
 """For so long must what was silenced have followed the motion before it is heard again [s]."""
 FORGETS: Final = 10.0
 """After such a silence of its own a channel is heard like a new one [s]."""
+LEAPS: Final = 0.4
+"""What is beyond what is allowed at once, and was less before, has leapt."""
 UNNOTICED: Final = 3.0
 """A lie goes unnoticed for so long at least [s]."""
 RETURNED: Final = 8.0
@@ -98,6 +100,10 @@ class Testimony:
         Since when a silenced channel has followed the motion [s].
     since : float
         Since when it has repeated itself to the bit [s].
+    excess : float
+        Of its last reading from what was felt, over what is allowed.
+    lying : float
+        Since when what it said is not to be trusted, if it is silenced [s].
     repeats : int
         How often in a row.
     lies : int
@@ -122,6 +128,8 @@ class Testimony:
     silent: float = math.inf
     follows: float = -math.inf
     since: float = -math.inf
+    excess: float = 0.0
+    lying: float = math.inf
     repeats: int = 0
     lies: int = 0
     surprises: int = 0
@@ -217,18 +225,21 @@ class Testimony:
             "silence".
         """
         if self.heard:
-            self.silent = self.follows = time
+            self.silent = self.follows = self.lying = time
         return "silence"
 
-    @property
-    def lying(self) -> float:
-        """Since when what a silenced channel said is not to be trusted, at the latest [s].
+    def _lied_since(self, said: Said, odd: bool, accused: bool, before: float) -> float:
+        """Since when what it said is not to be trusted.
 
-        From a while before it was found out, or from where it began to repeat itself; all, if it had just
-        come back.
+        From where it began to repeat itself, or from a while before it was found out; all, if it had just
+        come back. What leaps was true until then, and what is suspected need not lie.
         """
-        last = min(self.silent - UNNOTICED, self.since if self.since < self.silent else math.inf)
-        return min(last, self.began) if self.silent - self.began < RETURNED else last
+        if said.time - self.began < RETURNED:
+            return self.began
+        if self.copies(said.time):
+            return self.since
+        unnoticed = accused or (odd and before > LEAPS)
+        return said.time - UNNOTICED if unnoticed else said.time
 
     def hear(
         self,
@@ -264,6 +275,7 @@ class Testimony:
             spoke = self.past.n > 0
             fresh = type(self)(self.size, self.patience, lies=self.lies, began=said.time, returned=spoke)
             vars(self).update(vars(fresh))
+        before = self.excess
         odd = self._odd(said, slack) or accused
         if odd:
             self.past.forget()
@@ -276,6 +288,7 @@ class Testimony:
         if self.heard:
             if odd or unproved:
                 self.silent = self.follows = said.time
+                self.lying = self._lied_since(said, odd, accused, before)
                 self.lies += odd
             return "silence" if odd or unproved else self._insists(said, denied)
         if odd or said.rests or self.copies(said.time):  # a copy follows nothing
@@ -292,7 +305,8 @@ class Testimony:
             if not said.fits or self._dead(said):
                 return True
             doubt, slack = COPY_DOUBT, Slack(COPY_SHARE * slack.rate, COPY_SHARE * slack.bend)
-        return self.past.excess(*said.compared, slack, doubt) > 1.0
+        self.excess = self.past.excess(*said.compared, slack, doubt)
+        return self.excess > 1.0
 
     def _dead(self, said: Said) -> bool:
         """Whether it is a velocity that has repeated itself for too often."""
@@ -317,6 +331,7 @@ class Testimony:
         self.surprises, self.surprised, self.worst = 0, said.time, 0.0
         if denied:
             self.silent = self.follows = said.time
+            self.lying = said.time - self.insisted
             self.lies += 1
             return "silence"
         return "believe"
