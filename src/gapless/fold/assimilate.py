@@ -71,53 +71,24 @@ def assimilate(
     """
     b, n = state.belief, settings.layout.n
     nis, s, hp = assess(b.p, ROW, n, o.z, o.H, o.R)
-    verdict, ruling = Verdict(None), "use"
+    fits = nis <= soft_bound(o.z.size)
     if reading is not None:
-        ruling = _heard(state, settings, reading, o, nis, journal)
-    elif channel == "zero_velocity":
-        known = np.sqrt(b.P.diagonal()[9:12])
-        drift = state.hearing.rest.drifts(time, o.z[3:], known, state.hearing.channels.seen(time))
-        if drift is not None:
-            b.drift(drift)
-            journal.moved(time, "gyro", float(np.linalg.norm(drift)))
-            nis, s, hp = assess(b.p, ROW, n, o.z, o.H, o.R)
-    elif channel == "nonholonomic":
-        since, news = state.hearing.in_vain(channel, time, nis <= soft_bound(o.z.size))
-        if news and _slips(state, o.z, since, time, journal):
-            nis, s, hp = assess(b.p, ROW, n, o.z, o.H, o.R)
-        elif since and not state.hearing.channels.seen(time):
-            ruling = "silence"
+        ruling, changed = _heard(state, settings, reading, o, nis, journal), False
+    else:
+        ruling, changed = _held(state, channel, time, o, fits, journal)
+    if changed:
+        nis, s, hp = assess(b.p, ROW, n, o.z, o.H, o.R)
     if ruling == "turn":
         _turn(state, o.z, journal, time)
-    if ruling in ("believe", "turn"):
-        verdict = Verdict(o.R, widen=True)
-    elif ruling == "use" and math.isfinite(nis):
-        denied = channel == "velocity" and _denied(state, time, o.z)
-        told = Innovation(channel, time, o.z, s, o.R, nis, denied)
-        verdict = state.adaptation[kind_of(channel)].judge(told)
-        if verdict.r is o.R and not verdict.widen:
-            state.agreed[channel] = time
-        if verdict.widen and reading is not None:
-            journal.heard(channel, time, "believe")
-    elif not math.isfinite(nis) and (
-        not np.isfinite(b.x).all() or (np.isfinite(o.z).all() and np.isfinite(o.R).all())
-    ):
-        _lose(state, settings)  # not what was read is no number, but the belief
+    verdict = _judged(state, channel, time, o, s, nis, ruling)
+    if verdict.widen and ruling == "use" and reading is not None:
+        journal.heard(channel, time, "believe")
+    if not math.isfinite(nis) and _numberless(b, o):
+        _lose(state, settings)
     journal.innovation(channel, time, o.z, s, nis, _factor(verdict.r, o.R))
     _process(state, settings, verdict)
     if verdict.widen:
-        if (
-            ruling == "believe"
-            and channel == "odometer"
-            and not (state.lost or state.hearing.channels.seen(time))
-        ):
-            _felt_wrongly(state, o.z, state.hearing.channels.of[channel].insisted, time, journal)
-        b.widen(o.H, o.z)
-        if channel == "position":
-            _find_astray(state, settings, time, o.z)
-        misled = time - state.heard.get("bridge", -math.inf) < MISLED
-        if channel == "velocity" and (misled or ruling != "use"):
-            b.doubt(float(np.hypot(*o.z[:2])), settings.ceiling)
+        _widen(state, settings, channel, time, o, ruling, journal)
     r = verdict.r
     if r is None:
         return False
@@ -140,6 +111,69 @@ def assimilate(
         inject(b.x, dx)
         b.trail.shift(dx[3:6])
     return True
+
+
+def _held(
+    state: State, channel: str, time: float, o: Observation, fits: bool, journal: Journal
+) -> tuple[Ruling, bool]:
+    """What becomes of a constraint, or a bridge's word; whether the belief was changed by it."""
+    hearing, b = state.hearing, state.belief
+    seen = hearing.channels.seen(time)
+    if channel == "zero_velocity":
+        drift = hearing.rest.drifts(time, o.z[3:], np.sqrt(b.P.diagonal()[9:12]), seen)
+        if drift is not None:
+            b.drift(drift)
+            journal.moved(time, "gyro", float(np.linalg.norm(drift)))
+        return "use", drift is not None
+    if channel == "nonholonomic":
+        since, news = hearing.in_vain(channel, time, fits)
+        if news and _slips(state, o.z, since, time, journal):
+            return "use", True
+        if since and not seen:
+            return "silence", False
+    return "use", False
+
+
+def _judged(
+    state: State, channel: str, time: float, o: Observation, s: Array, nis: float, ruling: Ruling
+) -> Verdict:
+    """How an observation counts."""
+    if ruling in ("believe", "turn"):
+        return Verdict(o.R, widen=True)
+    if ruling != "use" or not math.isfinite(nis):
+        return Verdict(None)
+    denied = channel == "velocity" and _denied(state, time, o.z)
+    told = Innovation(channel, time, o.z, s, o.R, nis, denied)
+    verdict = state.adaptation[kind_of(channel)].judge(told)
+    if verdict.r is o.R and not verdict.widen:
+        state.agreed[channel] = time
+    return verdict
+
+
+def _numberless(b: Belief, o: Observation) -> bool:
+    """Whether it is not what was read that is no number, but the belief."""
+    return not np.isfinite(b.x).all() or bool(np.isfinite(o.z).all() and np.isfinite(o.R).all())
+
+
+def _widen(
+    state: State,
+    settings: Settings,
+    channel: str,
+    time: float,
+    o: Observation,
+    ruling: Ruling,
+    journal: Journal,
+) -> None:
+    """Doubt the filter where it is what was wrong."""
+    b, channels = state.belief, state.hearing.channels
+    if ruling == "believe" and channel == "odometer" and not (state.lost or channels.seen(time)):
+        _felt_wrongly(state, o.z, channels.of[channel].insisted, time, journal)
+    b.widen(o.H, o.z)
+    if channel == "position":
+        _find_astray(state, settings, time, o.z)
+    misled = time - state.heard.get("bridge", -math.inf) < MISLED
+    if channel == "velocity" and (misled or ruling != "use"):
+        b.doubt(float(np.hypot(*o.z[:2])), settings.ceiling)
 
 
 def _heard(
