@@ -14,6 +14,7 @@ from gapless.fold.journal import Journal
 from gapless.fold.settings import Settings
 from gapless.fold.state import SOON, State
 from gapless.fold.tape import Tape
+from gapless.inertial import doubts
 from gapless.inertial.belief import Belief, inject
 from gapless.inertial.layout import ROW
 from gapless.measurements.base import Observation
@@ -122,7 +123,7 @@ def _held(
     if channel == "zero_velocity":
         drift = hearing.rest.drifts(time, o.z[3:], np.sqrt(b.P.diagonal()[9:12]), seen)
         if drift is not None:
-            b.drift(drift)
+            doubts.drift(b, drift)
             journal.moved(time, "gyro", float(np.linalg.norm(drift)))
         return "use", drift is not None
     if channel == "nonholonomic":
@@ -173,7 +174,7 @@ def _widen(
         _find_astray(state, settings, time, o.z)
     misled = time - state.heard.get("bridge", -math.inf) < MISLED
     if channel == "velocity" and (misled or ruling != "use"):
-        b.doubt(float(np.hypot(*o.z[:2])), settings.ceiling)
+        doubts.doubt(b, float(np.hypot(*o.z[:2])), settings.ceiling)
 
 
 def _heard(
@@ -195,7 +196,7 @@ def _slips(state: State, z: Array, since: float, time: float, journal: Journal) 
     There, a constraint alone is not believed: nobody knows whether the car slips or the box was moved.
     """
     if state.hearing.channels.seen(time):
-        journal.knock(time, state.belief.remount(z), state.box)
+        journal.knock(time, doubts.remount(state.belief, z), state.box)
         return True
     if state.hearing.channels.rolls_otherwise(time):
         _felt_wrongly(state, z, since, time, journal)
@@ -208,7 +209,7 @@ def _felt_wrongly(state: State, z: Array, since: float, time: float, journal: Jo
     """What is left to tell of the motion denies what was felt: a force was none."""
     off = float(np.linalg.norm(z))
     journal.moved(time, "force", off / since)
-    state.belief.tipped(off, since)
+    doubts.tipped(state.belief, off, since)
 
 
 def _turn(state: State, z: Array, journal: Journal, time: float) -> None:
@@ -225,7 +226,7 @@ def _turn(state: State, z: Array, journal: Journal, time: float) -> None:
         angle = 0.0
     else:
         journal.moved(time, "heading", angle)
-    b.turn(angle)
+    doubts.turn(b, angle)
 
 
 def _find_astray(state: State, settings: Settings, time: float, z: Array) -> None:

@@ -9,6 +9,7 @@ import numpy as np
 from gapless.fold.journal import Journal
 from gapless.fold.settings import Settings
 from gapless.fold.state import State
+from gapless.inertial import doubts
 from gapless.inertial import propagate as at
 from gapless.inertial.layout import ROW
 from gapless.trip.events import ImuBlock, Motion
@@ -77,13 +78,13 @@ def watch(state: State, settings: Settings, journal: Journal, motion: Motion) ->
     tilt, c, force = upright(b.p, ROW, b.x, motion.rate, motion.force)
     jolt = state.hearing.jolts.feel(force, c, tilt, motion.dt, b.v_n)
     if jolt is not None and not state.lost:  # else it is the attitude that leans
-        b.knocked(jolt.turn, jolt.since, jolt.gained, settings.ceiling)
+        doubts.knocked(b, jolt.turn, jolt.since, jolt.gained, settings.ceiling)
         _moved(state, journal, jolt.turn, jolt.since, jolt.angle)
         return
     speed = math.hypot(*b.v_n[:2].tolist())
     turn = state.hearing.seat.moved(c, tilt, state.hearing.jolts.lean, speed, motion.rate)
     if turn is not None and not state.lost:
-        b.reseated(turn, settings.ceiling)
+        doubts.reseated(b, turn, settings.ceiling)
         _moved(state, journal, turn, LASTS * motion.dt, math.acos(0.5 * (float(np.trace(turn)) - 1.0)))
 
 
