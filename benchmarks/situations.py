@@ -147,7 +147,8 @@ SITUATIONS: Mapping[str, Situation] = {
     ),
     "receiver coasts by itself": Situation(partial(spoilt, "coasts", 1.0, 150.0, 180.0, ROAD), FROZEN),
     "positions aside by 30 m for a while": Situation(
-        partial(spoilt, "jumps", 30.0, 150.0, 180.0, ROAD), FROZEN
+        partial(spoilt, "jumps", 30.0, 150.0, 180.0, ROAD),
+        (Window(150.0, 180.0, 33.0), Window(180.0, 240.0, 33.0)),  # followed just before they move back
     ),
     "positions aside by 18 m for good": Situation(
         partial(spoilt, "moves", 18.0, 150.0, END, TOWN), (FOLLOWED,)
