@@ -119,9 +119,9 @@ def _held(
 ) -> tuple[Ruling, bool]:
     """What becomes of a constraint, or a bridge's word; whether the belief was changed by it."""
     hearing, b = state.hearing, state.belief
-    seen = hearing.channels.seen(time)
     if channel == "zero_velocity":
-        drift = hearing.rest.drifts(time, o.z[3:], np.sqrt(b.P.diagonal()[9:12]), seen)
+        known, seen = np.sqrt(b.P.diagonal()[9:12]), hearing.channels.seen(time)
+        drift = hearing.rest.drifts(time, o.z[3:], known, seen)
         if drift is not None:
             doubts.drift(b, drift)
             journal.moved(time, "gyro", float(np.linalg.norm(drift)))
@@ -130,7 +130,7 @@ def _held(
         since, news = hearing.in_vain(channel, time, fits)
         if news and _slips(state, o.z, since, time, journal):
             return "use", True
-        if since and not seen:
+        if since and not hearing.channels.seen(time):
             return "silence", False
     return "use", False
 

@@ -85,7 +85,10 @@ def watch(state: State, settings: Settings, journal: Journal, motion: Motion) ->
     turn = state.hearing.seat.moved(c, tilt, state.hearing.jolts.lean, speed, motion.rate)
     if turn is not None and not state.lost:
         doubts.reseated(b, turn, settings.ceiling)
-        _moved(state, journal, turn, LASTS * motion.dt, math.acos(0.5 * (float(np.trace(turn)) - 1.0)))
+        turned = math.acos(
+            min(1.0, max(-1.0, 0.5 * (float(np.trace(turn)) - 1.0)))
+        )  # roundings leave [-1, 1]
+        _moved(state, journal, turn, LASTS * motion.dt, turned)
 
 
 def _moved(state: State, journal: Journal, turn: Array, since: float, angle: float) -> None:

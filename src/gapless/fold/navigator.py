@@ -226,7 +226,8 @@ class Navigator:
             try:
                 self._feel(block)
             except FoundOut as lie:
-                kept, fed = self._past.back(lie.since)
+                shared, fed = self._past.back(lie.since)
+                kept = shared.copy()  # forks and snapshots may have it, and know of no lie
                 kept.hearing.disown(lie)
                 again, readings = sorted_out(fed, readings)
                 blocks = again + blocks
